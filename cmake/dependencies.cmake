@@ -14,6 +14,8 @@ find_package(Threads REQUIRED)
 add_library(rootsoil_flags INTERFACE)
 target_include_directories(rootsoil_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(rootsoil_flags INTERFACE -Wall -Wextra -Wshadow -Wno-psabi
+  # GCC 12 warns about its own AVX-512 headers
+  -Wno-maybe-uninitialized
   # errno and floating-point traps are never read; this keeps results
   # deterministic (unlike -ffast-math) and lets the compiler vectorise
   -fno-math-errno -fno-trapping-math)

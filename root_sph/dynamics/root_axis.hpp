@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// The root as a line: distance from the tip along a bent root, and how fast the tissue flows along it.
+#pragma once
+
+#include "root_sph/dynamics/tissue.hpp"
+
+#include <vector>
+
+namespace rootsoil {
+
+/// Keeps cells.distance_to_tip, and the flow profile v(s) = integral of the axial strain rate from the tip.
+///
+/// s is anchored anew in every window to a midline through the tissue, since advected distances drift (errors near
+/// the tip are amplified by the stretch, -6 % after 20 h): the centroids of slices of equal s are joined by a line,
+/// and a cell's distance is that of its projection. In a straight root this is x_tip - x.
+template <int Dim>
+class RootAxis {
+ public:
+  /// distance_to_tip must hold a first estimate, good enough to sort cells into slices.
+  void start(Tissue<Dim>& tissue);
+  /// New distances from the present positions.
+  void anchor(Tissue<Dim>& tissue);
+  /// Updates the flow profile from the axial strains of the window that ends; smoothed over 0.1 h.
+  void measure_flow(const Tissue<Dim>& tissue, double window_h);
+  /// Sets the profile, e.g. from the closed form: flow_mm_h[k] at s = k bin_mm().
+  void set_flow(std::vector<double> flow_mm_h) { flow_mm_h_ = std::move(flow_mm_h); }
+
+  double bin_mm() const { return bin_mm_; }
+  double length_mm() const { return length_mm_; }        ///< tip to base along the root
+  const Vec<Dim>& tip_mm() const { return tip_mm_; }     ///< the point s = 0
+  const std::vector<double>& flow() const { return flow_mm_h_; }
+  double flow_mm_h(double s_mm) const;                    ///< v(s)
+  double strain_rate_per_h(double s_mm) const;            ///< dv/ds
+  /// Axial acceleration of the tissue in steady growth above a held base, mm/h^2: e(L) v(L) - e(s) v(s).
+  double steady_acceleration(double s_mm) const;
+
+  /// State for a checkpoint: bin, length, tip, flow.
+  std::vector<double> save() const;
+  void restore(const std::vector<double>& saved);
+
+ private:
+  double bin_mm_ = 0.0;
+  double length_mm_ = 0.0;
+  Vec<Dim> tip_mm_ = Vec<Dim>::Zero();
+  std::vector<double> flow_mm_h_;
+};
+
+/// max over s of |sum of unbalanced axial force between the tip and s| / (p x cross-section): by how much inertia
+/// changes the axial stress, relative to the pressure differential.
+template <int Dim>
+double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis);
+
+extern template class RootAxis<2>;
+extern template class RootAxis<3>;
+
+}  // namespace rootsoil

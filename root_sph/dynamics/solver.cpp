@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include "root_sph/dynamics/solver.hpp"
+
+#include "root_sph/dynamics/motion.hpp"
+#include "root_sph/kernels/wendland.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rootsoil {
+
+template <int Dim>
+void Solver<Dim>::prepare() {
+  update_material_ = choose_material_loop<Dim>(tissue_.material);
+  add_forces_ = choose_force_loop<Dim>(terms_);
+}
+
+template <int Dim>
+void Solver<Dim>::begin_window() {
+  auto& cells = tissue_.cells;
+  Hooks<Dim>::run(hooks_.window_start, clock_, tissue_);
+  clock_.measure("root axis", [&] { axis_.anchor(tissue_); });
+
+  std::vector<Mat<Dim>> metrics(cells.size());
+  const auto fill_metrics = [&] {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      metrics[i] = options_.isotropic_h_mm ? isotropic_metric<Dim>(*options_.isotropic_h_mm)
+                                           : cell_metric<Dim>(cells.shape[i], options_.eta);
+    }
+  };
+  PairList old_pairs;
+  clock_.measure("neighbours", [&] {
+    fill_metrics();
+    cells.permute(spatial_order<Dim>(cells.position.values(), metrics));
+    fill_metrics();
+    old_pairs = std::move(tissue_.pairs);
+    tissue_.pairs = find_pairs<Dim>(cells.position.values(), metrics);
+  });
+  Hooks<Dim>::run(hooks_.parameters, clock_, tissue_);
+  clock_.measure("gradient operators", [&] {
+    gradient_report_ = build_gradients<Dim>(cells.position.values(), metrics, cells.volume.values(), tissue_.pairs,
+                                            options_.gradient, tissue_.gradients, tissue_.kernel);
+  });
+  clock_.measure("pair terms", [&] { rebuild_pair_terms<Dim>(tissue_, old_pairs, last_window_h_, terms_); });
+  std::vector<Vec<Dim>> stiffness;
+  clock_.measure("stability bound", [&] { stiffness = bound_stiffness<Dim>(tissue_, terms_); });
+  Hooks<Dim>::template run<std::vector<Vec<Dim>>&>(hooks_.stiffness, clock_, tissue_, stiffness);
+  clock_.measure("stability bound", [&] {
+    set_inertia<Dim>(tissue_, terms_, stiffness, options_.inertia);
+    tissue_.mass_damping_per_h =
+        options_.mass_damping_per_h ? *options_.mass_damping_per_h : critical_mass_damping<Dim>(tissue_);
+  });
+
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    tissue_.deformation[i].setIdentity();
+    tissue_.axial_strain[i] = 0.0;
+    tissue_.window_index[i] = static_cast<std::int64_t>(i);
+    if (terms_.non_affine) {
+      (*terms_.non_affine->start_position)[i] = cells.position[i];
+      (*terms_.non_affine->start_frame)[i] = cells.frame[i];
+    }
+  }
+}
+
+template <int Dim>
+void Solver<Dim>::symplectic_step() {
+  const double dt = tissue_.step_h;
+  auto& cells = tissue_.cells;
+  clock_.measure("velocity gradients", [&] { compute_velocity_gradients<Dim>(tissue_); });
+  clock_.measure("material", [&] { update_material_(tissue_, dt); });
+  clock_.measure("forces", [&] { add_forces_(tissue_, terms_, {dt, dt}); });
+  Hooks<Dim>::run(hooks_.forces, clock_, tissue_, SlipAdvance{dt, dt});
+  clock_.measure("motion", [&] {
+#pragma omp parallel for schedule(static)
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      cells.velocity[i] = advanced_velocity<Dim>(tissue_, i, cells.velocity[i], dt);
+      cells.position[i] += dt * cells.velocity[i];
+    }
+  });
+}
+
+/// The paper's 4.4. The second evaluation acts at the half step; positions move with the mean velocity.
+template <int Dim>
+void Solver<Dim>::predictor_corrector_step() {
+  const double dt = tissue_.step_h;
+  auto& cells = tissue_.cells;
+  const auto position = cells.position.values();
+  const auto velocity = cells.velocity.values();
+  const auto volume = cells.volume.values();
+  const auto mass = cells.mass.values();
+  const auto stress = cells.stress.values();
+  const auto frame = cells.frame.values();
+  const auto deformation = tissue_.deformation.values();
+  const auto strain = tissue_.axial_strain.values();
+  std::vector<Voigt<Dim>> deviatoric;
+  if (tissue_.material.deviatoric_stress) deviatoric = tissue_.material.deviatoric_stress->values();
+
+  compute_velocity_gradients<Dim>(tissue_);
+  update_nominal_forces<Dim>(tissue_);
+  add_forces_(tissue_, terms_, {0.0, 0.0});
+  Hooks<Dim>::run(hooks_.forces, clock_, tissue_, SlipAdvance{0.0, 0.0});
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells.position[i] = position[i] + 0.5 * dt * velocity[i];
+    cells.velocity[i] = advanced_velocity<Dim>(tissue_, i, velocity[i], 0.5 * dt);
+  }
+  update_material_(tissue_, 0.5 * dt);
+
+  compute_velocity_gradients<Dim>(tissue_);
+  add_forces_(tissue_, terms_, {0.5 * dt, dt});
+  Hooks<Dim>::run(hooks_.forces, clock_, tissue_, SlipAdvance{0.5 * dt, dt});
+  cells.frame.values() = frame;
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells.velocity[i] = advanced_velocity<Dim>(tissue_, i, velocity[i], dt);
+    cells.position[i] = position[i] + 0.5 * dt * (velocity[i] + cells.velocity[i]);
+  }
+  cells.volume.values() = volume;
+  cells.mass.values() = mass;
+  cells.stress.values() = stress;
+  tissue_.deformation.values() = deformation;
+  tissue_.axial_strain.values() = strain;
+  if (tissue_.material.deviatoric_stress) tissue_.material.deviatoric_stress->values() = deviatoric;
+  update_material_(tissue_, dt);
+}
+
+template <int Dim>
+void Solver<Dim>::end_window() {
+  auto& cells = tissue_.cells;
+  check_physical();
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells.shape[i] = deformed_shape<Dim>(cells.shape[i], tissue_.deformation[i]);
+  }
+  clock_.measure("root axis", [&] { axis_.measure_flow(tissue_, window_h_); });
+}
+
+template <int Dim>
+void Solver<Dim>::advance_window(int steps) {
+  window_h_ = steps * tissue_.step_h;
+  begin_window();
+  for (int k = 0; k < steps; ++k) {
+    Hooks<Dim>::run(hooks_.step_start, clock_, tissue_);
+    if (options_.stepper == Stepper::symplectic) {
+      symplectic_step();
+    } else {
+      clock_.measure("predictor-corrector", [&] { predictor_corrector_step(); });
+    }
+    ++steps_;
+    tissue_.time_h = static_cast<double>(steps_) * tissue_.step_h;
+  }
+  end_window();
+  last_window_h_ = window_h_;
+}
+
+/// A cell that inverts, tears away or is no longer a number ends the run: nothing is deleted or repaired.
+template <int Dim>
+void Solver<Dim>::check_physical() const {
+  const auto& cells = tissue_.cells;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double stretch = tissue_.deformation[i].determinant();
+    const char* what = nullptr;
+    if (!cells.position[i].allFinite() || !cells.velocity[i].allFinite() || !cells.stress[i].allFinite()) {
+      what = "is no longer a number";
+    } else if (!(stretch > 0.5 && stretch < 2.0) || !(cells.volume[i] > 0.0)) {
+      what = "changed its volume by more than a factor of two within a window";
+    }
+    if (!what) continue;
+    throw UnphysicalError(fmt::format(
+        "the tissue broke at t = {:.5g} h: cell {} {} (position {:.4g}, {:.4g} mm, distance from the tip {:.4g} mm, "
+        "{} neighbours). Usual causes: a step too large for the growth rate, a law that is not hyperbolic, a pressure "
+        "step of the size of the modulus",
+        tissue_.time_h, cells.cell_id[i], what, cells.position[i][0], cells.position[i][1], cells.distance_to_tip[i],
+        tissue_.pairs.neighbours[i]));
+  }
+}
+
+template <int Dim>
+void Solver<Dim>::save(std::map<std::string, std::vector<double>>& reals,
+                       std::map<std::string, std::vector<std::int64_t>>& integers) const {
+  reals["solver/axis"] = axis_.save();
+  reals["solver/last_window_h"] = {last_window_h_};
+  integers["solver/counters"] = {steps_, tissue_.next_cell_id};
+  if (!terms_.non_affine) return;
+  std::vector<std::int64_t>& index = integers["solver/slip_pairs"];
+  std::vector<double>& slip = reals["solver/slip_mm"];
+  for (std::size_t k = 0; k < tissue_.pairs.pairs.size(); ++k) {
+    index.push_back(tissue_.pairs.pairs[k].i);
+    index.push_back(tissue_.pairs.pairs[k].j);
+    slip.insert(slip.end(), terms_.non_affine->slip_mm[k].data(), terms_.non_affine->slip_mm[k].data() + Dim);
+  }
+  std::vector<double>& frames = reals["solver/start_frames"];
+  for (std::size_t i = 0; i < tissue_.cells.size(); ++i) {
+    const Mat<Dim>& f = (*terms_.non_affine->start_frame)[i];
+    frames.insert(frames.end(), f.data(), f.data() + Dim * Dim);
+  }
+}
+
+template <int Dim>
+void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& reals,
+                          const std::map<std::string, std::vector<std::int64_t>>& integers) {
+  axis_.restore(reals.at("solver/axis"));
+  last_window_h_ = reals.at("solver/last_window_h").at(0);
+  steps_ = integers.at("solver/counters").at(0);
+  tissue_.next_cell_id = integers.at("solver/counters").at(1);
+  tissue_.time_h = static_cast<double>(steps_) * tissue_.step_h;
+  const std::size_t n = tissue_.cells.size();
+  for (std::size_t i = 0; i < n; ++i) tissue_.window_index[i] = static_cast<std::int64_t>(i);
+  if (!terms_.non_affine) return;
+
+  const auto& index = integers.at("solver/slip_pairs");
+  const auto& slip = reals.at("solver/slip_mm");
+  const auto& frames = reals.at("solver/start_frames");
+  const std::size_t count = index.size() / 2;
+  ROOTSOIL_ASSERT(slip.size() == count * Dim && frames.size() == n * Dim * Dim);
+  tissue_.pairs = PairList{};
+  tissue_.pairs.row.assign(n + 1, 0);
+  terms_.non_affine->slip_mm.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    tissue_.pairs.pairs.push_back({static_cast<std::int32_t>(index[2 * k]), static_cast<std::int32_t>(index[2 * k + 1])});
+    ++tissue_.pairs.row[static_cast<std::size_t>(index[2 * k]) + 1];
+    terms_.non_affine->slip_mm[k] = Eigen::Map<const Vec<Dim>>(slip.data() + k * Dim);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    tissue_.pairs.row[i + 1] += tissue_.pairs.row[i];
+    (*terms_.non_affine->start_frame)[i] = Eigen::Map<const Mat<Dim>>(frames.data() + i * Dim * Dim);
+  }
+}
+
+template class Solver<2>;
+template class Solver<3>;
+
+}  // namespace rootsoil

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// A piece of tissue followed over time: the cell nearest to a point at the start and its descendants, or whatever
+// lies in a bin of distances from the tip.
+#pragma once
+
+#include "root_sph/effects/effect.hpp"
+
+#include <array>
+#include <optional>
+
+namespace rootsoil {
+
+struct ProbeParameters {
+  std::string name;
+  std::optional<std::array<double, 3>> position_mm;
+  std::optional<std::array<double, 2>> distance_to_tip_mm;
+};
+
+/// Means over the probe's cells at one time, weighted by volume.
+struct ProbeReading {
+  double cells, volume, x_mm, y_mm, z_mm, distance_to_tip_mm, axial_strain_rate_per_h, axial_stress_MPa,
+      radial_stress_MPa, density_ug_mm3, cell_length_mm;
+};
+
+template <int Dim>
+class ProbeEffect final : public Effect<Dim> {
+ public:
+  ProbeEffect(Solver<Dim>& solver, ProbeParameters parameters);
+
+  const std::string& name() const { return parameters_.name; }
+  ProbeReading read(const Tissue<Dim>& tissue);
+  /// Names of the columns of a reading, in its order.
+  static std::vector<std::string> columns();
+
+ private:
+  ProbeParameters parameters_;
+  Solver<Dim>& solver_;
+  Field<Dim, std::int64_t>* followed_ = nullptr;  ///< 1 for the cell at the point and its descendants
+};
+
+}  // namespace rootsoil

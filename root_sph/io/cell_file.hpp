@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Cells measured by microscopy, as MorphoGraphX users export them (CSV, micrometres).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "root_sph/core/types.hpp"
+
+namespace rootsoil {
+
+/// An ellipsoid.
+struct MeasuredCell {
+  std::int64_t label = 0;
+  Vec<3> position_mm = Vec<3>::Zero();
+  Mat<3> axes = Mat<3>::Identity();      ///< a rotation; columns e1, e2, e3 = e1 x e2
+  Vec<3> semi_axes_mm = Vec<3>::Ones();  ///< r1 >= r2 >= r3 > 0
+};
+
+/// Every row is a cell and every cell is kept. InputError names the file, the line and the column.
+std::vector<MeasuredCell> read_cell_file(const std::filesystem::path& path);
+
+/// The same for a text that is already in memory; `name` stands for the file in messages.
+std::vector<MeasuredCell> parse_cell_file(std::string_view text, const std::string& name);
+
+/// Q = R diag(1/r^2) R^T, 1/mm^2: the shape the solver works with.
+Mat<3> shape_matrix(const MeasuredCell& cell);
+
+/// Of the ellipsoid, mm^3.
+double volume_mm3(const MeasuredCell& cell);
+
+}  // namespace rootsoil

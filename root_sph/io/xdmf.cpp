@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "root_sph/io/series.hpp"
+
+namespace rootsoil {
+namespace {
+
+std::string data_item(const ColumnInfo& column, std::int64_t cells, std::size_t frame) {
+  const std::string width = column.components == 1 ? "" : fmt::format(" {}", column.components);
+  return fmt::format(
+      R"(<DataItem Format="HDF" NumberType="{}" Precision="8" Dimensions="{}{}">run.h5:{}/{}</DataItem>)",
+      column.is_integer ? "Int" : "Float", cells, width, frame_group(frame), column.name);
+}
+
+// ParaView draws a point only if something says which point it is: 0, 1, 2 ..., kept once for all frames.
+std::string topology(std::int64_t cells, std::int64_t most) {
+  return fmt::format(
+      "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{0}\" NodesPerElement=\"1\">"
+      "<DataItem ItemType=\"HyperSlab\" Dimensions=\"{0}\"><DataItem Format=\"XML\" Dimensions=\"3 1\">0 1 "
+      "{0}</DataItem>"
+      "<DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"8\" Dimensions=\"{1}\">run.h5:/point_index</DataItem>"
+      "</DataItem></Topology>\n",
+      cells, most);
+}
+
+// Six components go as a plain matrix: XDMF's own Tensor6 has another order (xx xy xz yy yz zz), whereas a
+// nameless array of six is to ParaView what it is here, xx yy zz xy yz xz.
+const char* attribute_type(int components) {
+  return components == 1 ? "Scalar" : components == 3 ? "Vector" : "Matrix";
+}
+
+}  // namespace
+
+std::string xdmf_text(const std::vector<FrameInfo>& frames) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
+      "<Grid Name=\"cells\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  auto out = std::back_inserter(text);
+  const std::int64_t most = most_cells(frames);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const FrameInfo& frame = frames[i];
+    fmt::format_to(out, "<Grid Name=\"cells\">\n<Time Value=\"{}\"/>\n", frame.time_h);
+    text += topology(frame.cells, most);
+    for (const ColumnInfo& column : frame.columns) {
+      const std::string item = data_item(column, frame.cells, i);
+      if (column.name == "position") {
+        fmt::format_to(out, "<Geometry GeometryType=\"{}\">{}</Geometry>\n", column.components == 2 ? "XY" : "XYZ",
+                       item);
+      } else {
+        fmt::format_to(out, "<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n", column.name,
+                       attribute_type(column.components), item);
+      }
+    }
+    text += "</Grid>\n";
+  }
+  return text + "</Grid>\n</Domain>\n</Xdmf>\n";
+}
+
+}  // namespace rootsoil

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// The scene file's language, as one table: every section, every key. Reading, the search for misspelt
+// keys, `rootsoil describe` and the resolved scene file all follow from it; a new key is one line there.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "root_sph/scene/scene.hpp"
+
+namespace rootsoil {
+
+using Numbers = std::vector<double>;
+using Texts = std::vector<std::string>;
+using Rows = std::vector<std::array<double, 2>>;
+
+/// What a key can hold.
+using Value = std::variant<bool, std::int64_t, double, std::string, Numbers, Texts, Rows>;
+
+/// A pair is two numbers; a vector has as many as the scene has dimensions; rows are [[h, value], ...].
+enum class ValueType { boolean, integer, number, text, pair, vector, texts, rows };
+
+/// Allowed range of a number, or of each number of a list (of rows: of the second number).
+struct Limits {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;
+  bool high_open = false;
+  std::string above_remedy;  ///< what a far too large value hints at: mostly a wrong unit
+
+  bool contains(double number) const;
+  bool bounded() const;
+  std::string text() const;
+  Limits up_to(double highest, std::string remedy = {}) const;
+};
+
+/// A key only means something where another key of its section has a value (one of `values`, or any).
+struct Condition {
+  std::string key;
+  std::vector<std::string> values;
+  bool absent = false;  ///< the reverse: only where the other key has none
+};
+
+struct KeySpec {
+  std::string name;
+  ValueType type = ValueType::number;
+  std::string unit;
+  Limits limits;
+  std::vector<std::string> choices;
+  std::string meaning;
+  std::string source;
+  bool required = false;
+  std::string default_text;
+  std::optional<Condition> condition;
+  std::string response_section;  ///< a section of response that can supply this key instead
+  std::function<void(Scene&, std::size_t, const Value&)> set;
+  /// The value in use, nothing where there is none.
+  std::function<std::optional<Value>(const Scene&, std::size_t)> get;
+};
+
+enum class SectionKind {
+  required,   ///< missing is an error
+  defaulted,  ///< always in effect, every key has a default
+  optional,   ///< absent = the effect is absent
+  repeated,   ///< [[name]]
+  refused,    ///< known, but not part of this build
+};
+
+struct SectionSpec {
+  std::string name;  ///< dotted, e.g. "tissue.anisotropy"
+  SectionKind kind = SectionKind::optional;
+  std::string meaning;  ///< of a refused section: why
+  std::vector<KeySpec> keys;
+  std::function<std::size_t(const Scene&)> count;  ///< 0 = absent; otherwise how many
+  std::function<void(Scene&)> add;                 ///< makes it present, or appends one
+
+  const KeySpec* find(std::string_view key) const;
+};
+
+/// In the order in which sections are read and written: a section comes after the one it lies in.
+const std::vector<SectionSpec>& schema();
+const SectionSpec* find_section(std::string_view name);
+
+/// Does the key's condition hold in element `index` of the section?
+bool applies(const SectionSpec& section, const KeySpec& key, const Scene& scene, std::size_t index);
+
+/// Is the key supplied by [response.*], which then replaces it?
+bool supplied_by_response(const KeySpec& key, const Scene& scene);
+
+/// "root.radius_mm", "obstacle[2].radius_mm"; without key the element itself. Users count from 1.
+std::string key_path(const SectionSpec& section, std::size_t index, std::string_view key = {});
+
+/// "[root]", "[[obstacle]]"
+std::string section_header(const SectionSpec& section);
+
+/// As TOML writes it; numbers with every digit that matters.
+std::string toml_text(const Value& value);
+
+/// "a number above 0", "one of a, b"
+std::string allowed_text(const KeySpec& key, int dimension);
+
+/// What `describe` says about one section, or about all.
+std::string describe(const std::optional<std::string>& section);
+
+/// The candidate with the smallest edit distance (letters inserted, dropped, changed or swapped).
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace rootsoil

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// The command line. What the commands do is in root_sph/scene.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "root_sph/core/errors.hpp"
+#include "root_sph/scene/commands.hpp"
+#include "root_sph/scene/read_scene.hpp"
+#include "root_sph/scene/schema.hpp"
+
+namespace {
+
+using namespace rootsoil;
+
+constexpr int bad_usage = static_cast<int>(ExitStatus::bad_input);
+constexpr int our_mistake = 1;
+
+/// CLI11's own speaks of ranges up to 1.8e308, digit by digit.
+const CLI::Validator positive(
+    [](const std::string& text) {
+      double number = 0.0;
+      return CLI::detail::lexical_cast(text, number) && number > 0 ? std::string() : text + " is not a number above 0";
+    },
+    "NUMBER");
+
+/// CLI11 answers a misspelt command with "a subcommand is required".
+void check_command(const CLI::App& app, const std::string& given) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  if (given.starts_with('-') || std::find(commands.begin(), commands.end(), given) != commands.end()) return;
+  throw InputError({.file = {},
+                    .line = 0,
+                    .key = {},
+                    .what = "there is no such command",
+                    .given = given,
+                    .allowed = {},
+                    .remedy = "did you mean " + nearest(given, commands) + "? --help lists them"});
+}
+
+int command_line(int argc, char** argv) {
+  CLI::App app{"rootsoil " ROOTSOIL_VERSION ": mechanical growth of plant roots, cell by cell", "rootsoil"};
+  app.require_subcommand(1);
+  std::function<int()> command;
+
+  std::filesystem::path scene_file;
+  std::vector<std::string> overrides;
+  std::optional<std::string> accuracy;
+  RunOptions options;
+  CLI::App* run = app.add_subcommand("run", "Run a scene");
+  run->add_option("SCENE", scene_file, "Scene file (TOML)")->required();
+  run->add_option("--out", options.out, "Folder of the run; otherwise runs/<scene name>");
+  run->add_option("--threads", options.threads, "Number of threads; otherwise all")->check(positive);
+  run->add_flag("--resume", options.resume, "Go on from the last checkpoint in the folder");
+  run->add_option("--set", overrides, "section.key=value, replaces what the scene says; can be repeated")
+      ->allow_extra_args(false);
+  run->add_option("--accuracy", accuracy, "fast, balanced or reference");
+  run->add_option("--until", options.until_h, "Stop at this simulated time, in hours")->check(positive);
+  run->add_flag("--quiet", options.quiet, "No progress");
+  run->callback([&] {
+    command = [&] {
+      const Scene scene = read_scene(scene_file, overrides, accuracy);
+      if (options.out.empty()) options.out = std::filesystem::path("runs") / scene.scene.name;
+      return run_scene(scene, options);
+    };
+  });
+
+  bool json = false;
+  CLI::App* check = app.add_subcommand("check", "Say what a scene would do and cost, without running it");
+  check->add_option("SCENE", scene_file, "Scene file (TOML)")->required();
+  check->add_flag("--json", json, "For programs");
+  check->callback([&] { command = [&] { return check_scene(read_scene(scene_file), json); }; });
+
+  std::filesystem::path run_folder, csv;
+  std::string time = "last";
+  CLI::App* export_ = app.add_subcommand("export", "Write the cells at one time as CSV, a row a cell");
+  export_->add_option("RUN", run_folder, "Folder of a run")->required();
+  export_->add_option("--time", time, "Hours, or last")->capture_default_str();
+  export_->add_option("--csv", csv, "File to write")->required();
+  export_->callback([&] { command = [&] { return export_run(run_folder, time, csv); }; });
+
+  CLI::App* effects = app.add_subcommand("effects", "List every effect that a scene can call for");
+  effects->add_flag("--json", json, "For programs");
+  effects->callback([&] { command = [&] { return list_effects(json); }; });
+
+  std::optional<std::string> section;
+  CLI::App* describe_ = app.add_subcommand("describe", "Explain the keys of a scene file");
+  describe_->add_option("SECTION", section, "One section, for example growth");
+  describe_->callback([&] {
+    command = [&] {
+      std::cout << describe(section);
+      return 0;
+    };
+  });
+
+  app.add_subcommand("version", "Print the version")->callback([&] {
+    command = [] {
+      std::cout << "rootsoil " ROOTSOIL_VERSION "\n";
+      return 0;
+    };
+  });
+
+  if (argc > 1) check_command(app, argv[1]);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : bad_usage;  // --help is one of them
+  }
+  return command();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto report = [](const std::string& text, int status) {
+    std::cerr << "rootsoil: " << text << '\n';
+    return status;
+  };
+  try {
+    return command_line(argc, argv);
+  } catch (const Error& e) {
+    return report(e.what(), static_cast<int>(e.status()));
+  } catch (const std::filesystem::filesystem_error& e) {
+    return report(e.what(), static_cast<int>(ExitStatus::file_trouble));
+  } catch (const std::bad_alloc&) {
+    return report("not enough memory; fewer cells need less", our_mistake);
+  } catch (const std::exception& e) {
+    return report(std::string("internal error: ") + e.what(), our_mistake);
+  }
+}

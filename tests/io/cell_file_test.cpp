@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "root_sph/io/cell_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "root_sph/core/errors.hpp"
+#include "root_sph/io/files.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace rootsoil {
+namespace {
+
+using test::expect_contains;
+
+const std::string header =
+    "Label, pos.X (um), pos.Y (um), pos.Z (um), e1.X, e1.Y, e1.Z, e2.X, e2.Y, e2.Z, r1 (um), r2 (um), r3 (um)\n";
+const std::string row = "7, 1000, -20.5, 3e1, 1, 0, 0, 0, 1, 0, 20, 10, 5\n";
+
+std::vector<MeasuredCell> parse(const std::string& text) { return parse_cell_file(text, "cells.csv"); }
+std::string refusal(const std::string& text) {
+  return test::message_of<InputError>([&] { parse(text); });
+}
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+void expect_the_cell(const std::string& text) {
+  const std::vector<MeasuredCell> cells = parse(text);
+  ASSERT_EQ(cells.size(), 1u) << text;
+  EXPECT_EQ(cells[0].label, 7);
+  EXPECT_TRUE(cells[0].position_mm.isApprox(Vec<3>(1.0, -0.0205, 0.03), 1e-15));
+  EXPECT_TRUE(cells[0].semi_axes_mm.isApprox(Vec<3>(0.02, 0.01, 0.005), 1e-15));
+  EXPECT_TRUE(cells[0].axes.isApprox(Mat<3>::Identity(), 1e-15));
+}
+
+TEST(CellFile, ReadsMicrometresAsMillimetres) { expect_the_cell(header + row); }
+
+TEST(CellFile, TheMicroSignMayArriveInAnyEncoding) {
+  // UTF-8 micro, UTF-8 mu, Latin-1, replacement character, UTF-8 read as Latin-1, question mark, control byte
+  for (const char* sign :
+       {"\xC2\xB5", "\xCE\xBC", "\xB5", "\xEF\xBF\xBD", "\xC3\x82\xC2\xB5", "?", "\x1A", "\xFF\xFE"}) {
+    expect_the_cell(replaced(header, "(um)", fmt::format("({}m)", sign)) + row);
+  }
+}
+
+TEST(CellFile, LayoutDoesNotMatter) {
+  expect_the_cell("\xEF\xBB\xBF" + replaced(header + row, "\n", "\r\n"));
+  expect_the_cell(replaced(header + row, " ", ""));
+  expect_the_cell(replaced(header + row, ",", " ,\t"));
+  expect_the_cell("\n" + header + "\n  \n" + row + "\n\n");
+  expect_the_cell(header + row.substr(0, row.size() - 1));
+  expect_the_cell(replaced(header, "\n", ",\n") + replaced(row, "\n", ",\n"));
+  expect_the_cell("\"Label\",\"pos.X (um)\"" + header.substr(header.find(", pos.Y")) + replaced(row, "7,", "\"7\","));
+  expect_the_cell(header + replaced(row, "1000", "+1000.0"));
+}
+
+TEST(CellFile, ColumnsMayComeInAnyOrderWithOthersBetween) {
+  expect_the_cell(
+      "type, r3 (um), Label, pos.Z (um), pos.Y (um), pos.X (um), e2.X, e2.Y, e2.Z, e1.X, e1.Y, e1.Z, r1 (um), r2 (um)\n"
+      "\"cortex, outer\", 5, 7, 30, -20.5, 1000, 0, 1, 0, 1, 0, 0, 20, 10\n");
+}
+
+TEST(CellFile, EveryCellIsKept) {
+  std::string text = header;
+  for (int i = 0; i < 3000; ++i) text += std::to_string(i).append(row.substr(1));
+  const std::vector<MeasuredCell> cells = parse(text);
+  ASSERT_EQ(cells.size(), 3000u);
+  for (int i = 0; i < 3000; ++i) EXPECT_EQ(cells[static_cast<std::size_t>(i)].label, i);
+}
+
+TEST(CellFile, NearlyOrthonormalAxesBecomeARotation) {
+  const MeasuredCell cell = parse(header + "1, 0, 0, 0, 0.995, 0.003, 0.001, -0.004, 0, 1.006, 20, 10, 5\n").at(0);
+  EXPECT_TRUE((cell.axes.transpose() * cell.axes).isApprox(Mat<3>::Identity(), 1e-14));
+  EXPECT_NEAR(cell.axes.determinant(), 1.0, 1e-14);
+  EXPECT_TRUE(cell.axes.col(0).isApprox(Vec<3>(0.995, 0.003, 0.001).normalized(), 1e-14));
+  EXPECT_TRUE(cell.axes.col(2).isApprox(Vec<3>(0, -1, 0), 2e-2));
+}
+
+TEST(CellFile, ShapeMatrixIsTheEllipsoid) {
+  const MeasuredCell cell = parse(header + "1, 0, 0, 0, 0.6, 0.8, 0, 0, 0, 1, 20, 10, 5\n").at(0);
+  const Mat<3> q = shape_matrix(cell);
+  EXPECT_TRUE(q.isApprox(q.transpose(), 1e-15));
+  for (int i = 0; i < 3; ++i) {
+    const Vec<3> end = cell.semi_axes_mm[i] * cell.axes.col(i);
+    EXPECT_NEAR(end.dot(q * end), 1.0, 1e-13);
+  }
+  EXPECT_NEAR(volume_mm3(cell), 4.0 / 3.0 * std::numbers::pi * 1e-6, 1e-18);
+}
+
+TEST(CellFile, AMissingFileIsNamed) {
+  const std::string message = test::message_of<InputError>([] { read_cell_file("no/cells.csv"); });
+  expect_contains(message, "no/cells.csv");
+  expect_contains(message, "there is no such file");
+}
+
+TEST(CellFile, IsReadFromTheDisk) {
+  const test::TemporaryFolder folder;
+  write_text_atomically(folder / "cells.csv", header + row);
+  EXPECT_EQ(read_cell_file(folder / "cells.csv").size(), 1u);
+}
+
+TEST(CellFile, EmptyFilesAndFilesWithoutCellsAreRefused) {
+  for (const char* nothing : {"", "\n \r\n", "\xEF\xBB\xBF"}) expect_contains(refusal(nothing), "the file is empty");
+  expect_contains(refusal(header), "cells.csv: the file holds no cells");
+}
+
+TEST(CellFile, AllMissingColumnsAreListed) {
+  const std::string message = refusal(replaced(replaced(header, "e1.Y", "f1.Y"), "r3 (um)", "r3 (mm)") + row);
+  expect_contains(message, "cells.csv:1: columns are missing: e1.Y, r3 (um)\n");
+  expect_contains(refusal(replaced(header, ",", ";") + row), "Label, pos.X (um)");
+  expect_contains(refusal("\xB5\x1B[31m\n"), "given:   ??[31m\n");
+  expect_contains(refusal(replaced(header, "e1.Y", "e1.X") + row), "column 'e1.X': the column is there twice");
+}
+
+struct BadRow {
+  std::string from, to;
+  std::vector<std::string> said;
+};
+
+TEST(CellFile, WhatIsWrongInARowIsSaidWithItsLineAndColumn) {
+  const std::vector<BadRow> bad_rows = {
+      {"1000", "1o00", {"column 'pos.X (um)'", "not a number", "1o00"}},
+      {"1000", "", {"column 'pos.X (um)'", "the value is missing"}},
+      {"1000", "nan", {"column 'pos.X (um)'", "not a finite number", "nan"}},
+      {"1000", "-inf", {"column 'pos.X (um)'", "not a finite number"}},
+      {"1000", "1e999", {"column 'pos.X (um)'", "not a finite number"}},
+      {"1000", "1e9", {"column 'pos.X (um)'", "out of range", "micrometres"}},
+      {"8,", "8.5,", {"column 'Label'", "not a whole number", "8.5"}},
+      {"8,", "1e300,", {"column 'Label'", "not a whole number"}},
+      {"8,", "7,", {"column 'Label'", "two cells have the same label", "7, also in line 2"}},
+      {"1, 0, 0, 0, 1, 0", "0, 0, 0, 0, 1, 0", {"column 'e1.X'", "the axis is zero"}},
+      {"1, 0, 0, 0, 1, 0", "1, 0, 0, 0, 0, 0", {"column 'e2.X'", "the axis is zero"}},
+      {"1, 0, 0, 0, 1, 0", "1e200, 1e200, 0, 0, 1, 0", {"column 'e1.X'", "not a unit vector"}},
+      {"1, 0, 0, 0, 1, 0", "1, 0, 0, 0.1, 0.995, 0", {"column 'e2.X'", "not orthogonal", "e1.e2 = 0.0999"}},
+      {"20, 10, 5", "20, 10, 0", {"column 'r3 (um)'", "must be positive"}},
+      {"20, 10, 5", "20, -10, 5", {"column 'r2 (um)'", "must be positive", "-10"}},
+      {"20, 10, 5", "20, 10, 1e-9", {"column 'r3 (um)'", "out of range"}},
+      {"20, 10, 5", "20, 5, 10", {"column 'r3 (um)'", "not in descending order", "r1 = 20, r2 = 5, r3 = 10"}},
+      {"20, 10, 5", "20, 10", {"column 'r3 (um)'", "the value is missing", "a row of 12 values"}},
+      {"20, 10, 5", "20, 10, 5, 4", {"more values than the header has columns", "14 values"}},
+  };
+  for (const BadRow& bad : bad_rows) {
+    const std::string changed = replaced(replaced(row, "7,", "8,"), bad.from, bad.to);
+    const std::string message = refusal(header + row + changed);
+    expect_contains(message, "cells.csv:3: ");
+    for (const std::string& part : bad.said) expect_contains(message, part);
+    expect_contains(message, "to do:");
+  }
+}
+
+}  // namespace
+}  // namespace rootsoil

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "root_sph/scene/presets.hpp"
+#include "root_sph/scene/schema.hpp"
+#include "root_sph/scene/write_scene.hpp"
+#include "tests/scene/scene_text.hpp"
+
+namespace rootsoil::testing {
+namespace {
+
+const std::string everything = R"([scene]
+name = "all-of_it.2"
+dimension = 3
+duration_h = 12.5
+seed = 9007199254740993
+allow_unstable = true
+
+[root]
+length_mm = 0.1
+radius_mm = 0.05
+cell_size_mm = 0.010000000000000002
+jitter = 0.3
+size_variation = 0.5
+curvature_per_mm = -0.2
+base_obliquity_deg = 10
+cap = false
+base = "clamped"
+clamp_length_mm = 0.02
+
+[tissue]
+law = "pressure_deviator"
+E_axial_MPa = 1020
+nu_axial = 0.05
+nu_radial = 0.25
+G_MPa = 400
+rho0_ug_mm3 = 1000.5
+
+[tissue.anisotropy]
+x_e_mm = 0.51
+c_e = 0.2
+
+[pressure]
+table = [[0, 1], [5, 0.5], [7.5, 0.75]]
+
+[growth]
+x_g_mm = -0.05
+c_g = -1
+mature_at_mm = 2
+mature_width_mm = 0.2
+
+[division]
+l0_mm = 0.01
+c_d = 1.5
+s_d_per_mm2 = 45
+x_d_mm = 0.12
+constant_beyond_mm = 0.5
+
+[response]
+extrapolate = false
+
+[response.growth]
+p_MPa = [0.987, 0.625]
+lambda0_ug_mm3_h = [4e5, 3e5]
+s_g_mm = [0.37, 0.3]
+
+[response.anisotropy]
+p_MPa = [0.825, 0.5]
+E_radial_max_MPa = [15000, 14000]
+s_e_per_mm = [1.3, 4]
+
+[non_affine_control]
+damping = 0.4
+stiffness = 0.06
+
+[[obstacle]]
+name = "wall"
+shape = "plane"
+position_mm = [1, 0, 0]
+normal = [-3, 1, 0.5]
+
+[[obstacle]]
+shape = "plane"
+position_mm = [1, 0, 0]
+angle_deg = 60
+friction = 0.1
+
+[[obstacle]]
+shape = "box"
+position_mm = [1, 0.1, 0]
+half_size_mm = [0.1, 0.2, 0.3]
+angle_deg = 30
+contact_modulus_MPa = 77
+
+[[obstacle]]
+shape = "sphere"
+position_mm = [1, 0, 0.2]
+radius_mm = 0.3
+
+[[probe]]
+position_mm = [0.1, 0, 0]
+
+[[probe]]
+name = "zone"
+distance_to_tip_mm = [0.2, 0.3]
+
+[numerics]
+accuracy = "reference"
+step_h = 3e-4
+window_steps = 10
+kernel = "isotropic"
+eta = 1.3
+H_bar = 4.5
+gradient = "linear"
+stepper = "predictor_corrector"
+inertia = "scalar"
+inertia_compensation = false
+mass_damping_per_h = 3
+artificial_viscosity = 0.6
+start = "rest"
+
+[output]
+every_h = 0.5
+checkpoint_every_h = 2
+fields = ["position", "stress"]
+picture = true
+)";
+
+TEST(Scene, MinimalGetsDefaults) {
+  const Scene s = parse(replaced(minimal, "name = \"small\"\n", ""));
+  EXPECT_EQ(s.scene.name, "test");
+  EXPECT_EQ(s.scene.dimension, 2);
+  EXPECT_DOUBLE_EQ(s.tissue.G_MPa, 1020 / (2 * 1.06));
+  EXPECT_EQ(s.output.checkpoint_every_h, s.output.every_h);
+  EXPECT_EQ(s.numerics.accuracy, "balanced");
+  EXPECT_EQ(s.file, "a/test.toml");
+}
+
+TEST(Scene, AbsentSectionsAreAbsent) {
+  const Scene s = parse(minimal);
+  EXPECT_FALSE(s.tissue.anisotropy || s.pressure || s.growth || s.division || s.response || s.non_affine_control);
+  EXPECT_TRUE(s.obstacles.empty() && s.probes.empty());
+  const std::string resolved = resolved_toml(s);
+  for (const SectionSpec& section : schema()) {
+    const bool always = section.kind == SectionKind::required || section.kind == SectionKind::defaulted;
+    EXPECT_EQ(resolved.find(section_header(section) + "\n") != std::string::npos, always) << section.name;
+  }
+}
+
+TEST(Scene, EmptySectionsWithDefaultsArePresent) {
+  const Scene s = parse(minimal + "\n[non_affine_control]\n");
+  ASSERT_TRUE(s.non_affine_control);
+  EXPECT_EQ(s.non_affine_control->damping, NonAffineControlSection{}.damping);
+}
+
+TEST(Scene, EverythingIsRead) {
+  const Scene s = parse(everything);
+  EXPECT_EQ(s.scene.seed, 9007199254740993);  // more than a double holds
+  EXPECT_EQ(s.root.cell_size_mm, 0.010000000000000002);
+  EXPECT_EQ(s.root.clamp_length_mm, 0.02);
+  EXPECT_EQ(s.pressure->table.at(2)[1], 0.75);
+  EXPECT_EQ(s.growth->mature_at_mm, 2.0);
+  EXPECT_EQ(s.division->constant_beyond_mm, 0.5);
+  EXPECT_FALSE(s.response->extrapolate);
+  EXPECT_EQ((*s.response->growth->s_g_mm)[1], 0.3);
+  EXPECT_FALSE(s.response->growth->c_g);
+  EXPECT_EQ((*s.response->anisotropy->E_radial_max_MPa)[1], 14000.0);
+  ASSERT_EQ(s.obstacles.size(), 4u);
+  EXPECT_EQ(s.obstacles[2].name, "obstacle_3");
+  EXPECT_EQ(s.obstacles[2].half_size_mm[2], 0.3);
+  EXPECT_EQ(s.obstacles[2].contact_modulus_MPa, 77.0);
+  EXPECT_EQ(s.obstacles[3].contact_modulus_MPa, 1020.0);
+  EXPECT_EQ((*s.probes.at(0).position_mm)[0], 0.1);
+  EXPECT_EQ((*s.probes.at(1).distance_to_tip_mm)[1], 0.3);
+  EXPECT_EQ(s.numerics.window_steps, 10);
+  EXPECT_EQ(s.numerics.step_h, 3e-4);
+  EXPECT_EQ(s.output.fields.at(1), "stress");
+}
+
+TEST(Scene, PlanesHaveUnitNormalsTowardsTheRoot) {
+  const Scene s = parse(everything);
+  const double length = std::hypot(3, 1, 0.5);
+  EXPECT_DOUBLE_EQ(s.obstacles[0].normal[0], -3 / length);
+  EXPECT_DOUBLE_EQ(s.obstacles[0].normal[2], 0.5 / length);
+  EXPECT_DOUBLE_EQ(s.obstacles[1].normal[0], -std::sqrt(3.0) / 2);  // a plane at 60 degrees to the root
+  EXPECT_NEAR(s.obstacles[1].normal[1], 0.5, 1e-15);
+}
+
+TEST(Scene, ResolvedSceneReadsBackTheSame) {
+  for (const std::string& text : {minimal, everything, minimal + anisotropy + pressure + growth,
+                                  minimal + "\n[pressure]\ntable = [[3, 0.5]]\n"}) {
+    const std::string once = resolved_toml(parse(text));
+    EXPECT_EQ(resolved_toml(parse(once)), once);
+    EXPECT_NE(once.find(ROOTSOIL_VERSION), std::string::npos);
+  }
+}
+
+TEST(Scene, EveryKeyIsWrittenUnlessItMeansNothing) {
+  const Scene scene = parse(everything);
+  const std::string resolved = resolved_toml(scene);
+  // the only keys that this scene has no place for
+  const std::set<std::string> left_out = {"root.cells_file", "root.tip_axis", "pressure.differential_MPa"};
+  for (const SectionSpec& section : schema()) {
+    for (const KeySpec& key : section.keys) {
+      const std::string name = section.name + "." + key.name;
+      const bool given = resolved.find("\n" + key.name + " = ") != std::string::npos;
+      EXPECT_EQ(given, left_out.count(name) == 0) << name;
+    }
+  }
+}
+
+TEST(Scene, ResolvedTextSurvivesAnyCharacter) {
+  EXPECT_EQ(toml_text(std::string("a\"b\\c\nd\x7f\xc3\xa9")), "\"a\\\"b\\\\c\\u000ad\\u007f\xc3\xa9\"");
+  EXPECT_EQ(toml_text(1.0), "1.0");
+  EXPECT_EQ(toml_text(0.1), "0.1");
+  EXPECT_EQ(toml_text(1e300), "1e+300");
+  EXPECT_EQ(toml_text(std::int64_t{3}), "3");
+}
+
+TEST(Scene, WholeNumbersServeAsNumbers) { EXPECT_EQ(parse(minimal).tissue.E_axial_MPa, 1020.0); }
+
+TEST(Scene, OneCellWideIsAllowed) { EXPECT_NO_THROW(parse(replaced(minimal, "= 0.05", "= 0.005"))); }
+
+TEST(Scene, CellsFileStartsFromTheScenesFolder) {
+  const auto folder = std::filesystem::temp_directory_path() / "rootsoil_scene_test";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "cells.csv") << "Label\n";
+  const std::string lattice = "length_mm = 0.4\nradius_mm = 0.05\ncell_size_mm = 0.01";
+  std::ofstream(folder / "s.toml") << replaced(replaced(minimal, lattice, "cells_file = \"./cells.csv\""), "[scene]",
+                                               "[scene]\ndimension = 3");
+  const Scene s = read_scene(folder / "s.toml");
+  EXPECT_EQ(s.root.cells_file, (folder / "cells.csv").string());
+  EXPECT_EQ(parse(resolved_toml(s)).root.cells_file, s.root.cells_file);  // from any other folder
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Scene, OverridesReplaceAddAndReachListElements) {
+  const std::string text = minimal + "\n[[obstacle]]\nshape = \"plane\"\nposition_mm = [1, 0]\nangle_deg = 90\n";
+  const Scene s = parse(text, {"root.radius_mm=0.07", "pressure.differential_MPa = 0.5", "obstacle.1.friction=0.9",
+                               "numerics.kernel=isotropic",
+                               "tissue.anisotropy={E_radial_max_MPa=2000, x_e_mm=1, "
+                               "s_e_per_mm=1, c_e=0}",
+                               "output.fields=[\"position\"]", "root.radius_mm=0.08"});
+  EXPECT_EQ(s.root.radius_mm, 0.08);
+  EXPECT_EQ(s.pressure->table.at(0)[1], 0.5);
+  EXPECT_EQ(s.obstacles.at(0).friction, 0.9);
+  EXPECT_EQ(s.obstacles.at(0).shape, "plane");
+  EXPECT_EQ(s.numerics.kernel, "isotropic");
+  EXPECT_EQ(s.tissue.anisotropy->E_radial_max_MPa, 2000.0);
+  EXPECT_EQ(s.tissue.E_axial_MPa, 1020.0);
+  EXPECT_EQ(s.output.fields.at(0), "position");
+}
+
+TEST(Scene, AccuracyFillsOnlyWhatTheSceneLeavesOut) {
+  for (const std::string& name : preset_names()) {
+    const NumericsSection numerics = preset(name);
+    const Scene s = parse_scene(minimal + "\n[numerics]\naccuracy = \"balanced\"\neta = 1.1\n", "test.toml", {}, name);
+    EXPECT_EQ(s.numerics.accuracy, name);
+    EXPECT_EQ(s.numerics.eta, 1.1);
+    EXPECT_EQ(s.numerics.window_steps, numerics.window_steps);
+    EXPECT_EQ(s.numerics.gradient, numerics.gradient);
+  }
+}
+
+TEST(Scene, PaperTable1IsAccepted) {
+  // Case 1: c_e = -1 with s_e = 0 means E_R = E_A, and c_e = 1 means E_R = E_H
+  for (const char* c_e : {"-1", "1"}) {
+    const std::string table_1 =
+        replaced(replaced(anisotropy, "s_e_per_mm = 6", "s_e_per_mm = 0"), "c_e = 0.2", std::string("c_e = ") + c_e);
+    EXPECT_NO_THROW(parse(minimal + table_1)) << c_e;
+  }
+}
+
+TEST(Nearest, CountsSwappedLettersOnce) {
+  EXPECT_EQ(nearest("raduis_mm", {"length_mm", "radius_mm", "cap"}), "radius_mm");
+  EXPECT_EQ(nearest("ab", {"ca", "ba"}), "ba");
+  EXPECT_EQ(nearest("", {"abc", "a"}), "a");
+  EXPECT_EQ(nearest(std::string(100000, 'x'), {"abc"}), "abc");
+}
+
+TEST(Describe, CoversEverySectionAndKeyIn100Columns) {
+  const std::string text = describe({});
+  for (const SectionSpec& section : schema()) {
+    EXPECT_NE(text.find(section_header(section)), std::string::npos);
+    const std::string own = describe(section.name);
+    EXPECT_NE(text.find(own), std::string::npos);
+    for (const KeySpec& key : section.keys) {
+      EXPECT_NE(own.find("\n  " + key.name + " "), std::string::npos) << key.name;
+      EXPECT_FALSE(key.meaning.empty() || key.unit.empty() || key.source.empty()) << key.name;
+    }
+  }
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+}
+
+TEST(Describe, NamesTheNearestSection) {
+  try {
+    describe("growht");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.problem().remedy, "did you mean growth?");
+  }
+}
+
+}  // namespace
+}  // namespace rootsoil::testing

@@ -1,0 +1,314 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Draws overview.png of a run, finished or still going on.
+
+A: the root at several times, each cell as its ellipse, coloured by its number of divisions (as the paper's Fig. 4A);
+in 3D the cells that the middle plane cuts. Below it the tip at the last time, where A is too small to see cells.
+B-D, over the distance from the tip, means of the last hours with the closed form drawn in: axial strain rate (1/h),
+cell length (um), radius (mm). In a scene without growth: axial and radial strain against Eq. 8, and radius.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib import pyplot as plt
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+
+from rootsoil_tools import draw, measure
+from rootsoil_tools.runs import Frame, Run, RunError
+from rootsoil_tools.theory import Model, model_of
+
+PAGE_WIDTH = 180.0  # mm of paper, as everything in capitals here
+MARGIN = 4.0
+HEADER = 10.0
+STACK_MAX_HEIGHT = 95.0
+ROW_GAP = 2.5
+LABEL_WIDTH = 10.0
+ZOOM_MAX_HEIGHT = 34.0
+PROFILE_HEIGHT = 40.0
+PANEL_GAP = 15.0
+TIMES = 6
+
+
+class Stack:
+    """The root at several times on one panel: where each goes, and at which scale."""
+
+    def __init__(self, run: Run):
+        wanted = np.linspace(run.times_h[0], run.times_h[-1], TIMES)
+        indices = sorted({int(np.argmin(np.abs(run.times_h - time))) for time in wanted})
+        self.run = run
+        self.frames = [run.frame(index) for index in indices]
+        low = np.min([f["position"][:, :2].min(axis=0) for f in self.frames], axis=0)
+        high = np.max([f["position"][:, :2].max(axis=0) for f in self.frames], axis=0)
+        edge = max(float(f["cell_axes"][:, 0].max()) for f in self.frames) / 2.0
+        pad = 0.05 * float(np.max(high - low)) if run.scene.get("obstacle") else 0.0  # to show what the root meets
+        self.low, self.high = low - edge, high + edge + [pad, pad]
+        self.low[1] -= pad
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """As many columns as leave the roots nearly as large on the paper as they can be."""
+        width, height = self.high - self.low
+        n = len(self.frames)
+
+        def scale(columns: int) -> float:
+            rows = -(-n // columns)
+            across = (PAGE_WIDTH - 2.0 * MARGIN) / columns - LABEL_WIDTH
+            down = STACK_MAX_HEIGHT / rows - ROW_GAP
+            return min(across / width, down / height)
+
+        best = max(scale(columns) for columns in (1, 2, 3))
+        self.columns = max(columns for columns in (1, 2, 3) if columns <= n and scale(columns) > 0.75 * best)
+        self.scale = scale(self.columns)  # mm of paper per mm of root
+        self.rows = -(-n // self.columns)
+        self.row_height = max(height * self.scale, 2.5) + ROW_GAP
+        self.height = self.rows * self.row_height
+
+    def draw(self, axes, colours) -> None:
+        """Into axes whose unit is 1 mm of root and whose origin is the panel's upper left corner."""
+        paper = 1.0 / self.scale
+        width = (PAGE_WIDTH - 2.0 * MARGIN) * paper
+        axes.set(xlim=(0.0, width), ylim=(-self.height * paper, 0.0))
+        axes.axis("off")
+        last_offset = (0.0, 0.0)
+        for number, frame in enumerate(self.frames):
+            column, row = divmod(number, self.rows)
+            middle = -(row + 0.5) * self.row_height * paper
+            left = column * width / self.columns + LABEL_WIDTH * paper
+            offset = (left - self.low[0], middle - (self.low[1] + self.high[1]) / 2.0)
+            cell_mm = float(np.median(frame["cell_axes"][:, 1])) * self.scale
+            draw.draw_obstacles(axes, self.run.scene.get("obstacle", []), (*self.low, *self.high), offset)
+            draw.draw_cells(axes, frame, self.run.dimension, colours, offset, edge_mm=0.04 * cell_mm * (cell_mm > 0.7))
+            axes.text(left - 1.5 * paper, middle, f"{frame.time_h:.3g} h", ha="right", va="center")
+            last_offset = offset
+        self.last_offset = last_offset
+
+
+class Zoom:
+    """The tip at the last time, drawn large."""
+
+    def __init__(self, run: Run, frame: Frame):
+        self.run, self.frame = run, frame
+        length = float(frame["distance_to_tip"].max())
+        radius = float(np.max(measure.radii(frame, run.dimension, np.linspace(0.0, length, 21))))
+        width_paper = PAGE_WIDTH - 2.0 * MARGIN - LABEL_WIDTH
+        reach = 2.0 * radius * width_paper / (0.8 * ZOOM_MAX_HEIGHT)
+        from_tip = frame["distance_to_tip"] - frame["distance_to_tip"].min()
+        self.near = from_tip < 1.2 * reach
+        tip = frame["position"][from_tip < reach, :2]
+        half_cell = np.median(frame["cell_axes"][self.near, 0])
+        self.low, self.high = tip.min(axis=0), tip.max(axis=0) + half_cell
+        self.low[1] -= half_cell
+        size = self.high - self.low
+        self.scale = min(width_paper / size[0], ZOOM_MAX_HEIGHT / size[1])
+        self.height = size[1] * self.scale
+
+    def draw(self, axes, colours) -> None:
+        """Into axes that are exactly as large as the zoomed box."""
+        axes.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]))
+        axes.set(xticks=[], yticks=[])
+        plt.setp(list(axes.spines.values()), visible=True, linewidth=0.5, color="#606060")
+        draw.draw_obstacles(axes, self.run.scene.get("obstacle", []), (*self.low, *self.high), (0.0, 0.0))
+        draw.draw_cells(axes, self.frame, self.run.dimension, colours, chosen=self.near, edge_mm=0.06)
+
+
+def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
+    """Axial strain rate, cell length and radius with theory and data; returns lines to print."""
+    last = run.frame(-1)
+    length = float(last["distance_to_tip"].max())
+    zone = model.growth_zone(length)
+    end = min(1.6 * zone, length)
+    edges = measure.edges_of(end, measure.bin_width(last, run.dimension, zone))
+    profiles = measure.growth_profiles(run, edges)
+    s = np.linspace(0.0, end, 600)
+    said = []
+
+    draw.draw_profile(panels[0], profiles["axial_strain_rate"])
+    panels[0].plot(s, model.axial_rate(s), **draw.THEORY_LINE)
+    panels[0].set_ylabel("axial strain rate (1/h)")
+    rate = profiles["axial_strain_rate"]
+    peak = model.axial_rate(s).max()
+    said.append(f"peak axial strain rate {np.nanmax(rate.mean):.4g} /h (closed form {peak:.4g} /h)")
+    said.append(f"tip speed {measure.tip_speed(run):.4g} mm/h (closed form {model.tip_speed(length):.4g} mm/h)")
+
+    draw.draw_profile(panels[1], profiles["cell_length"])
+    panels[1].set_ylabel("cell length (µm)")
+    if "arabidopsis" in run.name.lower():
+        distance, measured, _ = measure.cell_length_data()
+        shown = distance <= end
+        panels[1].plot(distance[shown], measured[shown], "o", color=draw.DATA, markersize=2.6, markeredgewidth=0)
+        r2 = measure.cell_length_r2(run)
+        panels[1].set_title(f"$R^2$ = {r2:.3f} (first 0.7 mm)", loc="right")
+        said.append(f"cell length, first 0.7 mm: R^2 = {r2:.4f}")
+
+    draw.draw_profile(panels[2], profiles["radius"])
+    start = min(int(np.searchsorted(edges, 0.25 * zone)), len(edges) - 2)
+    s_start, r_start = profiles["radius"].s_mm[start], profiles["radius"].mean[start]
+    # tissue that has come from the tip's cap since the start; what lies further back was put there
+    steady = s[(s >= s_start) & (s <= model.carried_to(r_start, float(run.times_h[-1]), length))]
+    if steady.size:
+        panels[2].plot(steady, model.radius(steady, s_start, r_start), **draw.THEORY_LINE)
+        panels[2].plot(s_start, r_start, "o", color=draw.THEORY, markersize=2.6)
+    panels[2].set_ylabel("radius (mm)")
+    mature = measure.mature_radius(model, run)
+    if np.isfinite(mature):
+        said.append(f"mature radius {mature:.4g} mm")
+    for panel in panels:
+        panel.set_xlim(0.0, end)
+    return said
+
+
+def draw_strain(run: Run, model: Model, panels: list) -> list[str]:
+    """Axial and radial strain against Eq. 8, and radius; returns lines to print."""
+    first, last = run.frame(0), run.frame(-1)
+    length = float(first["distance_to_tip"].max())
+    edges = measure.edges_of(length, 0.1 if length > 0.5 else length / 5.0)
+    middle = (edges[1:] + edges[:-1]) / 2.0
+    s = np.linspace(0.0, length, 400)
+    strains = measure.strain_profiles(first, last, run.dimension, edges)
+    theories = (lambda at: np.full_like(at, model.axial_strain()), model.radial_strain)
+    said = []
+    for panel, kind, strain, theory in zip(panels, ("axial", "radial"), strains, theories):
+        panel.plot(middle, 1e3 * strain, "o-", color=draw.SIMULATION, linewidth=1.0, markersize=2.6)
+        panel.plot(s, 1e3 * theory(s), **draw.THEORY_LINE)
+        panel.set_ylabel(f"{kind} strain (10$^{{-3}}$)")
+        top = 1.25e3 * max(np.nanmax(np.abs(strain)), np.abs(theory(s)).max())
+        panel.set_ylim(min(0.0, 1.25e3 * min(np.nanmin(strain), theory(s).min())), top)
+        inside = (middle > 0.1) & (middle < 1.5) & np.isfinite(strain)
+        if inside.any():
+            error = 100.0 * np.abs(strain[inside] / theory(middle[inside]) - 1.0)
+            panel.set_title(f"off Eq. 8: {error.mean():.2f} % (most {error.max():.2f} %)", loc="right")
+            said.append(
+                f"{kind} strain, 0.1 mm < s < 1.5 mm: {error.mean():.3f} % off Eq. 8 (most {error.max():.3f} %)"
+            )
+    fine = measure.edges_of(length, edges[1])
+    panels[2].plot(middle, measure.radii(last, run.dimension, fine), "-", color=draw.SIMULATION, linewidth=1.3)
+    panels[2].set_ylabel("radius (mm)")
+    panels[2].set_ylim(0.0, 1.15 * panels[2].get_ylim()[1])
+    for panel in panels:
+        panel.set_xlim(0.0, length)
+    return said
+
+
+def legend(figure, bottom: float, run: Run, growing: bool) -> None:
+    """One line above the panels that says what is drawn how."""
+    if growing:
+        times = run.times_h[run.window(measure.WINDOW_H)]
+        period = f"{times[0]:.3g}–{times[-1]:.3g} h" if len(times) > 1 else f"{times[-1]:.3g} h"
+        entries = [
+            (Line2D([], [], color=draw.SIMULATION, linewidth=1.3), f"simulation, mean of {period}"),
+            (Patch(facecolor=draw.SIMULATION, alpha=0.22), "16–84 %"),
+            (Line2D([], [], **draw.THEORY_LINE), "closed form (radius: steady, from the dot)"),
+        ]
+        if "arabidopsis" in run.name.lower():
+            source = measure.cell_length_data()[2]
+            entries.append((Line2D([], [], marker="o", color=draw.DATA, markersize=3, linestyle="", mew=0), source))
+    else:
+        entries = [
+            (Line2D([], [], marker="o", color=draw.SIMULATION, markersize=3), f"simulation, {run.times_h[-1]:.3g} h"),
+            (Line2D([], [], **draw.THEORY_LINE), "Eq. 8"),
+        ]
+    paper = figure.get_size_inches() * 25.4
+    figure.legend(
+        *zip(*entries),
+        loc="lower center",
+        bbox_to_anchor=(0.5, bottom / paper[1]),
+        ncol=len(entries),
+        frameon=False,
+        columnspacing=1.3,
+        handlelength=1.9,
+        borderpad=0.0,
+    )
+
+
+def division_bar(figure, colours, top: float) -> None:
+    """The colours of the numbers of divisions, right of the header."""
+    count = colours.N
+    box = min(6.0, 60.0 / count)
+    axes = draw.place(figure, PAGE_WIDTH - MARGIN - box * count, top - 3.0, box * count, 2.6)
+    axes.imshow(np.arange(count)[None, :], cmap=colours, aspect="auto", vmin=-0.5, vmax=count - 0.5)
+    step = max(1, -(-count // 12))
+    axes.set(yticks=[], xticks=range(0, count, step))
+    axes.tick_params(length=0, pad=1.5)
+    plt.setp(list(axes.spines.values()), visible=True, linewidth=0.4)
+    axes.text(-0.02 * count - 0.5, 0.0, "divisions ", ha="right", va="center")
+
+
+def draw_overview(run: Run, out: Path) -> list[str]:
+    """Draws the figure; returns lines worth printing."""
+    draw.use_style()
+    model = model_of(run.scene, float(run.times_h[-1]))
+    growing = model.growth is not None
+    stack = Stack(run)
+    last = stack.frames[-1]
+    cell_paper = float(np.median(last["cell_axes"][:, 1])) * stack.scale
+    zoom = Zoom(run, last) if cell_paper < 0.8 else None
+    colours = draw.division_colours(int(max(frame["generation"].max() for frame in stack.frames)))
+
+    below = 11.0  # tick labels and axis label
+    above = 13.0  # titles and legend
+    zoom_height = zoom.height + 8.0 if zoom else 0.0  # with a gap above, and a line for its scale bar below
+    height = below + PROFILE_HEIGHT + above + zoom_height + stack.height + HEADER
+    figure = draw.new_figure(PAGE_WIDTH, height)
+
+    top = height - HEADER
+    letter_bottom = height - 6.0
+    draw.letter(figure, MARGIN, letter_bottom, "A")
+    title = run.name if run.dimension == 2 else f"{run.name} (middle plane)"
+    figure.text((MARGIN + 6.0) / PAGE_WIDTH, letter_bottom / height, title, size=8.5, va="bottom")
+    draw.scale_bar(figure, 0.55 * PAGE_WIDTH, height - 4.5, stack.scale)
+    division_bar(figure, colours, height - 2.5)
+    stack_axes = draw.place(figure, MARGIN, top - stack.height, PAGE_WIDTH - 2.0 * MARGIN, stack.height)
+    stack.draw(stack_axes, colours)
+    if zoom:
+        width = (zoom.high - zoom.low)[0] * zoom.scale
+        bottom = top - stack.height - zoom.height - 2.0
+        zoom.draw(draw.place(figure, MARGIN + LABEL_WIDTH, bottom, width, zoom.height), colours)
+        place_text = ((MARGIN + LABEL_WIDTH - 1.5) / PAGE_WIDTH, (bottom + zoom.height / 2.0) / height)
+        figure.text(*place_text, "tip at\n" + f"{last.time_h:.3g} h", ha="right", va="center")
+        draw.scale_bar(figure, MARGIN + LABEL_WIDTH + width, bottom - 3.0, zoom.scale)
+        corner = zoom.low + stack.last_offset
+        stack_axes.add_patch(
+            Rectangle(corner, *(zoom.high - zoom.low), fill=False, edgecolor="#606060", linewidth=0.5)
+        )
+
+    width = (PAGE_WIDTH - 2.0 * MARGIN - LABEL_WIDTH - 2.0 * PANEL_GAP) / 3.0
+    lefts = [MARGIN + LABEL_WIDTH + number * (width + PANEL_GAP) for number in range(3)]
+    panels = [draw.place(figure, left, below, width, PROFILE_HEIGHT) for left in lefts]
+    said = draw_growth(run, model, panels) if growing else draw_strain(run, model, panels)
+    for left, panel, name in zip(lefts, panels, "BCD"):
+        panel.set_xlabel("distance from the tip (mm)")
+        low, high = panel.get_ylim()
+        panel.set_ylim(bottom=low if low < -0.1 * high else 0.0)
+        draw.letter(figure, left - LABEL_WIDTH, below + PROFILE_HEIGHT + 1.0, name)
+    legend(figure, below + PROFILE_HEIGHT + 7.0, run, growing)
+
+    temporary = out.with_name(f".{out.name}.part{out.suffix}")
+    figure.savefig(temporary, dpi=draw.DOTS_PER_INCH)
+    temporary.replace(out)
+    plt.close(figure)
+    return said
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=Path, help="folder of the run")
+    parser.add_argument("--out", type=Path, help="file to write: png, pdf or svg (default: RUN/overview.png)")
+    options = parser.parse_args()
+    out = options.out or options.run / "overview.png"
+    try:
+        said = draw_overview(Run(options.run), out)
+    except (RunError, OSError, ValueError, KeyError) as error:
+        print(f"overview: no picture of {options.run}: {error}", file=sys.stderr)
+        return 1
+    print("\n".join([*said, f"wrote {out}"]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

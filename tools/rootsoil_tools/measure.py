@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: MIT
+"""Measuring along the root: bins over the distance from the tip. Lengths in mm, times in h."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rootsoil_tools.runs import Frame, Run
+from rootsoil_tools.theory import Model
+
+WINDOW_H = 10.0  # profiles are means over the last hours of a run
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A quantity over the distance from the tip; NaN where a bin is empty."""
+
+    s_mm: np.ndarray
+    mean: np.ndarray
+    low: np.ndarray  # 16th percentile
+    high: np.ndarray  # 84th percentile
+
+
+def round_width(width: float) -> float:
+    """The largest of 1, 2, 2.5, 5 times a power of ten that is at most `width`."""
+    power = 10.0 ** np.floor(np.log10(width))
+    return float(max(m for m in (1.0, 2.0, 2.5, 5.0) if m * power <= width * (1.0 + 1e-9)) * power)
+
+
+def bin_width(frame: Frame, dimension: int, zone: float) -> float:
+    """Width of bins (mm) that resolve the growth zone and hold enough cells."""
+    cell = float(np.median(frame.axial_lengths(dimension)[frame["distance_to_tip"] < zone]))
+    return round_width(max(zone / 40.0, cell / 2.0))
+
+
+def edges_of(end: float, width: float) -> np.ndarray:
+    """Edges of bins of a width from the tip up to `end`."""
+    return width * np.arange(max(int(np.floor(end / width + 1e-9)), 1) + 1)
+
+
+def binned(s: np.ndarray, values: np.ndarray, edges: np.ndarray) -> Profile:
+    """Mean and 16th to 84th percentile of the values in each bin."""
+    owner = np.searchsorted(edges, s, side="right") - 1
+    table = np.full((3, len(edges) - 1), np.nan)
+    for index in range(len(edges) - 1):
+        inside = values[owner == index]
+        if inside.size:
+            table[:, index] = inside.mean(), *np.percentile(inside, [16, 84])
+    return Profile((edges[1:] + edges[:-1]) / 2.0, *table)
+
+
+def radii(frame: Frame, dimension: int, edges: np.ndarray) -> np.ndarray:
+    """Radius of the root in each bin (mm), from the tissue's cross-section: half of it in 2D, sqrt(A/pi) in 3D.
+
+    Each cell's volume is spread evenly over its length, so that cells may be longer than a bin.
+    """
+    s, length, volume = frame["distance_to_tip"], frame.axial_lengths(dimension), frame["volume"]
+    start = s - length / 2.0
+    up_to_edge = np.array([np.sum(volume * np.clip((edge - start) / length, 0.0, 1.0)) for edge in edges])
+    section = np.diff(up_to_edge) / np.diff(edges)
+    return section / 2.0 if dimension == 2 else np.sqrt(section / np.pi)
+
+
+def growth_profiles(run: Run, edges: np.ndarray) -> dict[str, Profile]:
+    """axial_strain_rate (1/h), cell_length (um) and radius (mm): the frames of the last WINDOW_H taken together."""
+    s, rate, length, radius = [], [], [], []
+    for index in run.window(WINDOW_H):
+        frame = run.frame(index)
+        s.append(frame["distance_to_tip"])
+        rate.append(frame["axial_strain_rate"])
+        length.append(1e3 * frame.axial_lengths(run.dimension))
+        radius.append(radii(frame, run.dimension, edges))
+    middle = (edges[1:] + edges[:-1]) / 2.0
+    return {
+        "axial_strain_rate": binned(np.concatenate(s), np.concatenate(rate), edges),
+        "cell_length": binned(np.concatenate(s), np.concatenate(length), edges),
+        "radius": Profile(middle, np.mean(radius, axis=0), *np.percentile(radius, [16, 84], axis=0)),
+    }
+
+
+def strain_profiles(first: Frame, last: Frame, dimension: int, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Axial and radial strain of a straight root along x between two frames, in bins of the first's distance.
+
+    In each bin the least-squares slope of the last position against the first, less one: x for the axial strain;
+    y, and in 3D z with it, for the radial strain. NaN in bins with fewer than three cells.
+    """
+    order_first, order_last = np.argsort(first["cell_id"]), np.argsort(last["cell_id"])
+    if not np.array_equal(first["cell_id"][order_first], last["cell_id"][order_last]):
+        raise ValueError("strain between two frames needs the same cells in both")
+    before, after = first["position"][order_first], last["position"][order_last]
+    owner = np.searchsorted(edges, first["distance_to_tip"][order_first], side="right") - 1
+    strains = np.full((2, len(edges) - 1), np.nan)
+    for index in range(len(edges) - 1):
+        x0, x1 = before[owner == index], after[owner == index]
+        if len(x0) < 3:
+            continue
+        x0, x1 = x0 - x0.mean(axis=0), x1 - x1.mean(axis=0)
+        for row, axes in enumerate((slice(0, 1), slice(1, dimension))):
+            spread = np.sum(x0[:, axes] ** 2)
+            if spread > 0.0:
+                strains[row, index] = np.sum(x0[:, axes] * x1[:, axes]) / spread - 1.0
+    return strains[0], strains[1]
+
+
+def mature_radius(model: Model, run: Run) -> float:
+    """Mean radius (mm) just behind the growth zone, over a quarter of its length; NaN where the root ends before.
+
+    Only of tissue that has flowed through the growth zone since the start: tissue that was further than a radius
+    from the tip at the start and is still in the root is left out, as far as the closed form can tell.
+    """
+    last = run.frame(-1)
+    length = float(last["distance_to_tip"].max())
+    zone = model.growth_zone(length)
+    tip_radius = float(np.max(radii(last, run.dimension, edges_of(length, length / 20.0))))
+    end = min(1.25 * zone, length, model.carried_to(tip_radius, float(run.times_h[-1]), length))
+    if end <= zone:
+        return float("nan")
+    window = np.array([zone, end])
+    return float(np.mean([radii(run.frame(i), run.dimension, window)[0] for i in run.window(WINDOW_H)]))
+
+
+def tip_speed(run: Run) -> float:
+    """Growth of the root's length (mm/h) over the last WINDOW_H, from history.csv; NaN where that is too short."""
+    history = run.history()
+    if "length_mm" not in history:
+        return float("nan")
+    time, length = history["time_h"], history["length_mm"]
+    inside = time >= time[-1] - min(WINDOW_H, (time[-1] - time[0]) / 3.0) - 1e-9
+    return float(np.polyfit(time[inside], length[inside], 1)[0]) if np.count_nonzero(inside) > 1 else float("nan")
+
+
+def cell_length_data() -> tuple[np.ndarray, np.ndarray, str]:
+    """Measured cortical cell length of Arabidopsis: distance from the tip (mm), length (um), and whose it is."""
+    path = Path(__file__).parent.parent / "data" / "arabidopsis_cell_length.csv"
+    distance_um, length_um = np.loadtxt(path, delimiter=",", skiprows=3, unpack=True)
+    return distance_um / 1e3, length_um, "Beemster & Baskin 1998"
+
+
+def determination(measured: np.ndarray, simulated: np.ndarray) -> float:
+    """R^2 = 1 - SSE/SST."""
+    return float(1.0 - np.sum((measured - simulated) ** 2) / np.sum((measured - measured.mean()) ** 2))
+
+
+def cell_length_r2(run: Run) -> float:
+    """R^2 of the simulated to the measured cell length, both in bins of 25 um over the first 0.7 mm."""
+    distance, measured, _ = cell_length_data()
+    profile = growth_profiles(run, edges_of(0.7, 0.025))["cell_length"]
+    filled = np.isfinite(profile.mean)
+    if not filled.any():
+        return float("nan")
+    simulated = np.interp(profile.s_mm, profile.s_mm[filled], profile.mean[filled])
+    return determination(np.interp(profile.s_mm, distance, measured), simulated)
