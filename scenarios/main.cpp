@@ -2,6 +2,7 @@
 // The command line. What the commands do is in root_sph/scene.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -75,8 +76,11 @@ int command_line(int argc, char** argv) {
   bool json = false;
   CLI::App* check = app.add_subcommand("check", "Say what a scene would do and cost, without running it");
   check->add_option("SCENE", scene_file, "Scene file (TOML)")->required();
+  check->add_option("--set", overrides, "section.key=value, replaces what the scene says; can be repeated")
+      ->allow_extra_args(false);
+  check->add_option("--accuracy", accuracy, "fast, balanced or reference");
   check->add_flag("--json", json, "For programs");
-  check->callback([&] { command = [&] { return check_scene(read_scene(scene_file), json); }; });
+  check->callback([&] { command = [&] { return check_scene(read_scene(scene_file, overrides, accuracy), json); }; });
 
   std::filesystem::path run_folder, csv;
   std::string time = "last";
@@ -123,6 +127,7 @@ int main(int argc, char** argv) {
     std::cerr << "rootsoil: " << text << '\n';
     return status;
   };
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, with a message
   try {
     return command_line(argc, argv);
   } catch (const Error& e) {

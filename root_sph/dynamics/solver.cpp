@@ -14,6 +14,8 @@ template <int Dim>
 void Solver<Dim>::prepare() {
   update_material_ = choose_material_loop<Dim>(tissue_.material);
   add_forces_ = choose_force_loop<Dim>(terms_);
+  // no window before the first one
+  for (std::int64_t& index : tissue_.window_index.values()) index = -1;
 }
 
 template <int Dim>

@@ -41,7 +41,7 @@ class Solver {
   const RootAxis<Dim>& axis() const { return axis_; }
   Hooks<Dim>& hooks() { return hooks_; }
   const SolverOptions& options() const { return options_; }
-  PhaseClock& clock() { return clock_; }
+  const PhaseClock& clock() const { return clock_; }
   const GradientReport& gradient_report() const { return gradient_report_; }
   std::int64_t steps() const { return steps_; }
 

@@ -65,8 +65,8 @@ Energies energies(const Tissue<Dim>& tissue) {
 }
 
 template <int Dim>
-double relative_momentum_residual(const Tissue<Dim>& tissue) {
-  Vec<Dim> sum = Vec<Dim>::Zero();
+double relative_momentum_residual(const Tissue<Dim>& tissue, const Vec<Dim>& external_N) {
+  Vec<Dim> sum = -external_N;
   for (std::size_t i = 0; i < tissue.cells.size(); ++i) sum += tissue.force[i];
   double magnitudes = 0.0;
   for (std::size_t k = 0; k < tissue.pairs.pairs.size(); ++k) {
@@ -81,7 +81,7 @@ template struct Tissue<2>;
 template struct Tissue<3>;
 template Energies energies<2>(const Tissue<2>&);
 template Energies energies<3>(const Tissue<3>&);
-template double relative_momentum_residual<2>(const Tissue<2>&);
-template double relative_momentum_residual<3>(const Tissue<3>&);
+template double relative_momentum_residual<2>(const Tissue<2>&, const Vec<2>&);
+template double relative_momentum_residual<3>(const Tissue<3>&, const Vec<3>&);
 
 }  // namespace rootsoil

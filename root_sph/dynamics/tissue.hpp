@@ -77,9 +77,9 @@ struct Energies {
 template <int Dim>
 Energies energies(const Tissue<Dim>& tissue);
 
-/// |sum of forces| / sum of the magnitudes of the pair forces' parts: 0 up to rounding when only pair forces act.
+/// |sum of all forces - external| / sum of the magnitudes of the pair forces' parts: rounding, whatever happens.
 template <int Dim>
-double relative_momentum_residual(const Tissue<Dim>& tissue);
+double relative_momentum_residual(const Tissue<Dim>& tissue, const Vec<Dim>& external_N = Vec<Dim>::Zero());
 
 extern template struct Tissue<2>;
 extern template struct Tissue<3>;

@@ -20,6 +20,10 @@ struct ProbeParameters {
 struct ProbeReading {
   double cells, volume, x_mm, y_mm, z_mm, distance_to_tip_mm, axial_strain_rate_per_h, axial_stress_MPa,
       radial_stress_MPa, density_ug_mm3, cell_length_mm;
+  std::vector<double> values() const {
+    return {cells,           volume,          x_mm, y_mm, z_mm, distance_to_tip_mm, axial_strain_rate_per_h,
+            axial_stress_MPa, radial_stress_MPa, density_ug_mm3, cell_length_mm};
+  }
 };
 
 template <int Dim>

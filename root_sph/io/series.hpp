@@ -26,6 +26,8 @@ struct ColumnInfo {
   std::string meaning;
   int components = 1;
   bool is_integer = false;
+
+  bool operator==(const ColumnInfo&) const = default;
 };
 
 struct FrameInfo {
@@ -33,6 +35,8 @@ struct FrameInfo {
   std::int64_t step = 0;
   std::int64_t cells = 0;
   std::vector<ColumnInfo> columns;
+
+  bool operator==(const FrameInfo&) const = default;
 };
 
 /// Attributes of the file as a whole, e.g. program, version, scene, dimension.

@@ -101,6 +101,7 @@ TEST(Series, ListsWhatAFrameHolds) {
   SeriesWriter writer(folder.path(), metadata);
   writer.write(frame_at(7));
   const FrameInfo frame = list_frames(folder / "run.h5").at(0);
+  EXPECT_EQ(frame, writer.frames().at(0));
   EXPECT_EQ(frame.time_h, 0.1 * 7);
   EXPECT_EQ(frame.step, 7);
   EXPECT_EQ(frame.cells, 700);
@@ -119,6 +120,7 @@ TEST(Series, ResumedIsByteForByteWhatAnUninterruptedRunLeaves) {
     for (int i = 0; i < 8; ++i) writer.write(frame_at(i));
     writer.finish();
   }
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // a time of day in the file would now differ
   {
     SeriesWriter writer(resumed.path(), metadata);
     for (int i = 0; i < 6; ++i) writer.write(frame_at(i));

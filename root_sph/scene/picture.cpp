@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "root_sph/scene/picture.hpp"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+extern char** environ;
+
+namespace rootsoil {
+
+std::string draw_picture(const std::filesystem::path& run) {
+  // the system's Python: another one may come first on PATH and lack the packages
+  const std::string python = "/usr/bin/python3", script = ROOTSOIL_TOOLS_DIR "/overview.py", folder = run.string();
+  const char* const arguments[] = {python.c_str(), script.c_str(), folder.c_str(), nullptr};
+  pid_t child = 0;
+  int status = 0;
+  const bool drawn = posix_spawn(&child, python.c_str(), nullptr, nullptr, const_cast<char* const*>(arguments), environ) == 0 &&
+                     waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return drawn ? fmt::format("picture: {}", (run / "overview.png").string())
+               : fmt::format("no picture: {} {} {} failed", python, script, folder);
+}
+
+}  // namespace rootsoil

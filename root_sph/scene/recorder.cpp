@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "root_sph/scene/recorder.hpp"
+
+#include "root_sph/core/errors.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace rootsoil {
+namespace {
+
+/// Collects a column of reals, three or six numbers a cell where `per_cell` returns a vector or a matrix.
+template <int Dim>
+class ColumnMaker {
+ public:
+  ColumnMaker(const Tissue<Dim>& tissue, std::vector<FrameColumn>& columns) : tissue_(tissue), columns_(columns) {}
+
+  template <class PerCell>
+  void scalar(const char* name, const char* unit, const char* meaning, PerCell&& per_cell) {
+    std::vector<double> values(tissue_.cells.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = per_cell(i);
+    columns_.push_back({name, unit, meaning, 1, std::move(values)});
+  }
+  void integers(const char* name, const char* meaning, std::vector<std::int64_t> values) {
+    columns_.push_back({name, "1", meaning, 1, std::move(values)});
+  }
+  template <class PerCell>
+  void vector(const char* name, const char* unit, const char* meaning, PerCell&& per_cell) {
+    std::vector<double> values(3 * tissue_.cells.size(), 0.0);
+    for (std::size_t i = 0; i < tissue_.cells.size(); ++i) {
+      const Vec<Dim> v = per_cell(i);
+      std::copy(v.data(), v.data() + Dim, values.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    }
+    columns_.push_back({name, unit, meaning, 3, std::move(values)});
+  }
+  /// xx yy zz xy yz xz
+  template <class PerCell>
+  void tensor(const char* name, const char* unit, const char* meaning, PerCell&& per_cell) {
+    std::vector<double> values(6 * tissue_.cells.size(), 0.0);
+    for (std::size_t i = 0; i < tissue_.cells.size(); ++i) {
+      const Mat<Dim> m = per_cell(i);
+      double* out = values.data() + 6 * i;
+      for (int a = 0; a < Dim; ++a) out[a] = m(a, a);
+      out[3] = m(0, 1);
+      if constexpr (Dim == 3) {
+        out[4] = m(1, 2);
+        out[5] = m(0, 2);
+      }
+    }
+    columns_.push_back({name, unit, meaning, 6, std::move(values)});
+  }
+
+ private:
+  const Tissue<Dim>& tissue_;
+  std::vector<FrameColumn>& columns_;
+};
+
+template <int Dim>
+Vec<Dim> axis_lengths(const Mat<Dim>& shape) {
+  return 2.0 * Eigen::SelfAdjointEigenSolver<Mat<Dim>>(shape, Eigen::EigenvaluesOnly).eigenvalues().cwiseSqrt().cwiseInverse();
+}
+
+void keep_wanted(std::vector<FrameColumn>& columns, const std::vector<std::string>& wanted) {
+  if (wanted.empty()) return;
+  std::set<std::string> known;
+  for (const FrameColumn& c : columns) known.insert(c.name);
+  for (const std::string& name : wanted) {
+    if (known.contains(name)) continue;
+    throw InputError({"", 0, "output.fields", "there is no such field in this scene", name,
+                      fmt::format("{}", fmt::join(known, ", ")), "take it out, or leave fields empty to write all"});
+  }
+  std::erase_if(columns, [&](const FrameColumn& c) {
+    return c.name != "position" && c.name != "cell_id" && std::find(wanted.begin(), wanted.end(), c.name) == wanted.end();
+  });
+}
+
+}  // namespace
+
+template <int Dim>
+Frame make_frame(const Model<Dim>& model, const std::vector<std::string>& wanted) {
+  const Tissue<Dim>& tissue = model.solver.tissue();
+  const auto& cells = tissue.cells;
+  const double window_h = model.solver.window_h();
+  Frame frame;
+  frame.time_h = tissue.time_h;
+  frame.step = model.solver.steps();
+  ColumnMaker<Dim> make(tissue, frame.columns);
+  make.vector("position", "mm", "centre of the cell", [&](std::size_t i) { return cells.position[i]; });
+  make.vector("velocity", "mm/h", "velocity of the centre", [&](std::size_t i) { return cells.velocity[i]; });
+  make.scalar("volume", Dim == 2 ? "mm^2" : "mm^3", "volume of the cell (2D: area)",
+              [&](std::size_t i) { return cells.volume[i]; });
+  make.scalar("density", "ug/mm^3", "biological mass per volume",
+              [&](std::size_t i) { return cells.mass[i] / cells.volume[i]; });
+  make.tensor("stress", "MPa", "stress of the tissue, tension positive, without the pressure differential",
+              [&](std::size_t i) -> Mat<Dim> {
+                return cells.frame[i] * to_matrix<Dim>(cells.stress[i]) * cells.frame[i].transpose();
+              });
+  make.scalar("pressure", "MPa", "isostatic part of the stress, compression positive",
+              [&](std::size_t i) { return -cells.stress[i].template head<Dim>().mean(); });
+  make.scalar("axial_strain_rate", "1/h", "along the root axis, mean over the latest window",
+              [&](std::size_t i) { return window_h > 0.0 ? tissue.axial_strain[i] / window_h : 0.0; });
+  make.scalar("distance_to_tip", "mm", "from the tip along the root",
+              [&](std::size_t i) { return cells.distance_to_tip[i]; });
+  make.vector("axis", "1", "unit vector along the root, towards the tip",
+              [&](std::size_t i) -> Vec<Dim> { return cells.frame[i].col(0); });
+  make.vector("cell_axes", "mm", "lengths of the cell's axes, longest first",
+              [&](std::size_t i) { return axis_lengths<Dim>(cells.shape[i]); });
+  make.tensor("shape", "1/mm^2", "shape matrix Q, eigenvalues 4/length^2",
+              [&](std::size_t i) { return cells.shape[i]; });
+  make.integers("generation", "divisions since the start", cells.generation.values());
+  make.integers("cell_id", "unique number of the cell", cells.cell_id.values());
+  make.integers("parent_id", "cell_id of the mother, -1 at the start", cells.parent_id.values());
+  make.integers("clamped", "1 where the base is held", cells.clamped.values());
+  if (!tissue.pairs.neighbours.empty()) {
+    make.integers("neighbours", "cells that this cell interacts with",
+                  {tissue.pairs.neighbours.begin(), tissue.pairs.neighbours.end()});
+  } else {
+    make.integers("neighbours", "cells that this cell interacts with", std::vector<std::int64_t>(cells.size(), 0));
+  }
+  for (const auto& effect : model.effects) effect->add_columns(tissue, frame.columns);
+  keep_wanted(frame.columns, wanted);
+  return frame;
+}
+
+std::vector<std::string> history_columns() {
+  return {"time_h",          "cells",
+          "divisions",       "tip_x_mm",
+          "tip_y_mm",        "tip_z_mm",
+          "length_mm",       "tip_speed_mm_h",
+          "max_axial_strain_rate_per_h", "mean_radius_mm",
+          "kinetic_over_elastic", "inertia_error",
+          "min_neighbours",  "contact_force_x_N",
+          "contact_force_y_N", "contact_force_z_N",
+          "contact_force_N"};
+}
+
+template <int Dim>
+HistoryRow make_history_row(const Model<Dim>& model, const LengthMark& before, std::int64_t divisions) {
+  const Tissue<Dim>& tissue = model.solver.tissue();
+  const RootAxis<Dim>& axis = model.solver.axis();
+  const auto& cells = tissue.cells;
+
+  HistoryRow row;
+  row.length_mm = axis.length_mm();
+  row.inertia_error = inertia_error<Dim>(tissue, axis);
+  Vec<Dim> contact = Vec<Dim>::Zero();
+  for (const auto& effect : model.effects) contact += effect->contact_force_N();
+  row.momentum_residual = relative_momentum_residual<Dim>(tissue, contact);
+
+  const double elapsed_h = tissue.time_h - before.time_h;
+  const double tip_speed =
+      elapsed_h > 0.0 ? (row.length_mm - before.length_mm) / elapsed_h : axis.flow_mm_h(row.length_mm);
+  double fastest = 0.0;
+  for (std::size_t k = 1; k < axis.flow().size(); ++k) {
+    fastest = std::max(fastest, (axis.flow()[k] - axis.flow()[k - 1]) / axis.bin_mm());
+  }
+  double volume = 0.0;
+  std::int64_t fewest = tissue.pairs.neighbours.empty() ? 0 : static_cast<std::int64_t>(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!cells.clamped[i]) volume += cells.volume[i];
+    if (!tissue.pairs.neighbours.empty()) fewest = std::min<std::int64_t>(fewest, tissue.pairs.neighbours[i]);
+  }
+  const double section = volume / row.length_mm;
+  const Energies energy = energies<Dim>(tissue);
+  const Vec<Dim>& tip = axis.tip_mm();
+  row.values = {tissue.time_h,
+                static_cast<double>(cells.size()),
+                static_cast<double>(divisions),
+                tip[0],
+                tip[1],
+                Dim == 3 ? tip[Dim - 1] : 0.0,
+                row.length_mm,
+                tip_speed,
+                fastest,
+                Dim == 2 ? 0.5 * section : std::sqrt(section / std::numbers::pi),
+                energy.elastic > 0.0 ? energy.kinetic / energy.elastic : 0.0,
+                row.inertia_error,
+                static_cast<double>(fewest),
+                contact[0],
+                contact[1],
+                Dim == 3 ? contact[Dim - 1] : 0.0,
+                contact.norm()};
+  return row;
+}
+
+template Frame make_frame<2>(const Model<2>&, const std::vector<std::string>&);
+template Frame make_frame<3>(const Model<3>&, const std::vector<std::string>&);
+template HistoryRow make_history_row<2>(const Model<2>&, const LengthMark&, std::int64_t);
+template HistoryRow make_history_row<3>(const Model<3>&, const LengthMark&, std::int64_t);
+
+}  // namespace rootsoil

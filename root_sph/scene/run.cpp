@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: MIT
+// The only run loop.
+#include "root_sph/core/errors.hpp"
+#include "root_sph/effects/probe.hpp"
+#include "root_sph/io/checkpoint.hpp"
+#include "root_sph/io/files.hpp"
+#include "root_sph/io/history.hpp"
+#include "root_sph/io/series.hpp"
+#include "root_sph/scene/commands.hpp"
+#include "root_sph/scene/model.hpp"
+#include "root_sph/scene/picture.hpp"
+#include "root_sph/scene/progress.hpp"
+#include "root_sph/scene/recorder.hpp"
+#include "root_sph/scene/run_log.hpp"
+#include "root_sph/scene/write_scene.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <memory>
+
+namespace rootsoil {
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+/// Ctrl-C and kill end a run at the next window, with a checkpoint. Restores the old handlers.
+class SignalGuard {
+ public:
+  SignalGuard() {
+    stop_requested = 0;
+    old_interrupt_ = std::signal(SIGINT, [](int) { stop_requested = 1; });
+    old_terminate_ = std::signal(SIGTERM, [](int) { stop_requested = 1; });
+  }
+  ~SignalGuard() {
+    std::signal(SIGINT, old_interrupt_);
+    std::signal(SIGTERM, old_terminate_);
+  }
+
+ private:
+  void (*old_interrupt_)(int);
+  void (*old_terminate_)(int);
+};
+
+/// Identifies the physics of a scene: what may change on resume is left out.
+std::string scene_digest(Scene scene) {
+  scene.scene.duration_h = 1.0;
+  scene.output.picture = false;
+  scene.output.checkpoint_every_h = 1.0;
+  scene.output.every_h = 1.0;
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  for (const unsigned char c : resolved_toml(scene)) hash = (hash ^ c) * 0x100000001b3ULL;
+  return fmt::format("{:016x}", hash);
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+/// A run in its folder: advances, records, writes.
+template <int Dim>
+class Run {
+ public:
+  Run(const Scene& scene, const RunOptions& options, const RunFolder& folder);
+  ExitStatus go();
+
+ private:
+  void record();
+  void write_checkpoint_file();
+  void resume_from_checkpoint();
+  void write_summary(const std::string& status) const;
+  std::int64_t steps_per(double interval_h) const {
+    return std::max<std::int64_t>(1, std::llround(interval_h / model().solver.tissue().step_h));
+  }
+  Model<Dim>& model() { return *built_.model; }
+  const Model<Dim>& model() const { return *built_.model; }
+  std::int64_t divisions() const {
+    return static_cast<std::int64_t>(model().solver.tissue().cells.size()) - cells_start_;
+  }
+
+  Scene scene_;  ///< with the step that is used
+  const RunOptions& options_;
+  std::filesystem::path folder_;
+  BuiltModel<Dim> built_;
+  RunLog log_;
+  std::unique_ptr<SeriesWriter> series_;
+  std::unique_ptr<HistoryWriter> history_;
+  struct ProbeFile {
+    ProbeEffect<Dim>* probe;
+    std::unique_ptr<HistoryWriter> file;
+  };
+  std::vector<ProbeFile> probe_files_;
+
+  std::int64_t cells_start_ = 0;
+  LengthMark last_row_;
+  double inertia_error_max_ = 0.0, momentum_residual_max_ = 0.0;
+  std::int64_t degenerate_max_ = 0;
+  double pair_steps_ = 0.0;
+  std::int64_t steps_done_ = 0;  ///< in this session
+  double wall_s_ = 0.0;
+  double checkpoint_h_ = 0.0;
+};
+
+template <int Dim>
+Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& folder)
+    : scene_(scene),
+      options_(options),
+      folder_(folder.path()),
+      built_(build_model<Dim>(scene)),
+      log_(folder.path() / "run.log", options.quiet) {
+  const Tissue<Dim>& tissue = model().solver.tissue();
+  scene_.numerics.step_h = tissue.step_h;
+  cells_start_ = static_cast<std::int64_t>(tissue.cells.size());
+  last_row_ = {0.0, model().solver.axis().length_mm()};
+  make_frame<Dim>(model(), scene_.output.fields);  // refuses unknown fields before anything is written
+
+  std::optional<double> continue_h;
+  if (options.resume) {
+    resume_from_checkpoint();
+    continue_h = tissue.time_h;
+  }
+  write_text_atomically(folder_ / "scene.toml", resolved_toml(scene_));
+  series_ = std::make_unique<SeriesWriter>(
+      folder_,
+      SeriesMetadata{{"program", "rootsoil"},
+                     {"version", ROOTSOIL_VERSION},
+                     {"scene", scene_.scene.name},
+                     {"dimension", std::to_string(Dim)}},
+      continue_h);
+  history_ = std::make_unique<HistoryWriter>(folder_ / "history.csv", history_columns(), continue_h);
+  for (const auto& effect : model().effects) {
+    auto* probe = dynamic_cast<ProbeEffect<Dim>*>(effect.get());
+    if (!probe) continue;
+    std::vector<std::string> columns = ProbeEffect<Dim>::columns();
+    columns.insert(columns.begin(), "time_h");
+    probe_files_.push_back({probe, std::make_unique<HistoryWriter>(folder_ / ("probe_" + probe->name() + ".csv"),
+                                                                   columns, continue_h)});
+  }
+}
+
+template <int Dim>
+void Run<Dim>::record() {
+  const Tissue<Dim>& tissue = model().solver.tissue();
+  series_->write(make_frame<Dim>(model(), scene_.output.fields));
+  const HistoryRow row = make_history_row<Dim>(model(), last_row_, divisions());
+  history_->append(row.values);
+  last_row_ = {tissue.time_h, row.length_mm};
+  inertia_error_max_ = std::max(inertia_error_max_, row.inertia_error);
+  momentum_residual_max_ = std::max(momentum_residual_max_, row.momentum_residual);
+  for (const ProbeFile& p : probe_files_) {
+    std::vector<double> values = p.probe->read(tissue).values();
+    values.insert(values.begin(), tissue.time_h);
+    p.file->append(values);
+  }
+}
+
+template <int Dim>
+void Run<Dim>::write_checkpoint_file() {
+  const Tissue<Dim>& tissue = model().solver.tissue();
+  Checkpoint checkpoint;
+  checkpoint.time_h = tissue.time_h;
+  checkpoint.step = model().solver.steps();
+  checkpoint.scene_digest = scene_digest(scene_);
+  checkpoint.program_version = ROOTSOIL_VERSION;
+  checkpoint.dimension = Dim;
+  store_cells<Dim>(tissue.cells, checkpoint);
+  model().solver.save(checkpoint.reals, checkpoint.integers);
+  for (const auto& effect : model().effects) effect->save(checkpoint.reals);
+  checkpoint.integers["run/cells_start"] = {cells_start_};
+  checkpoint.reals["run/last_row"] = {last_row_.time_h, last_row_.length_mm};
+  checkpoint.reals["run/worst"] = {inertia_error_max_, momentum_residual_max_};
+  write_checkpoint(folder_ / "checkpoint.h5", checkpoint);
+  checkpoint_h_ = tissue.time_h;
+}
+
+template <int Dim>
+void Run<Dim>::resume_from_checkpoint() {
+  const std::filesystem::path path = folder_ / "checkpoint.h5";
+  const Checkpoint checkpoint = read_checkpoint(path);
+  if (checkpoint.scene_digest != scene_digest(scene_) || checkpoint.dimension != Dim) {
+    throw InputError({scene_.file, 0, "--resume", "the checkpoint in this folder belongs to another scene",
+                      path.string(), "the scene that began this run; only duration_h and [output] may differ",
+                      "take " + (folder_ / "scene.toml").string() + ", or another --out"});
+  }
+  if (checkpoint.program_version != ROOTSOIL_VERSION) {
+    throw InputError({path.string(), 0, "--resume", "the checkpoint was written by another version of the program",
+                      checkpoint.program_version, ROOTSOIL_VERSION, "use that version, or start anew in another --out"});
+  }
+  restore_cells<Dim>(checkpoint, model().solver.tissue().cells);
+  model().solver.restore(checkpoint.reals, checkpoint.integers);
+  for (const auto& effect : model().effects) effect->restore(checkpoint.reals);
+  cells_start_ = checkpoint.integers.at("run/cells_start").at(0);
+  last_row_ = {checkpoint.reals.at("run/last_row").at(0), checkpoint.reals.at("run/last_row").at(1)};
+  inertia_error_max_ = checkpoint.reals.at("run/worst").at(0);
+  momentum_residual_max_ = checkpoint.reals.at("run/worst").at(1);
+  checkpoint_h_ = checkpoint.time_h;
+}
+
+template <int Dim>
+void Run<Dim>::write_summary(const std::string& status) const {
+  const Solver<Dim>& solver = model().solver;
+  const Tissue<Dim>& tissue = solver.tissue();
+  nlohmann::ordered_json fields;
+  for (const auto& field : tissue.cells.fields()) {
+    fields.push_back({{"name", field->info().name},
+                      {"unit", field->info().unit},
+                      {"bytes_per_cell", field->bytes_per_cell()},
+                      {"kept", field->info().storage == Storage::state ? "state" : "scratch"}});
+  }
+  nlohmann::ordered_json tip;
+  for (int a = 0; a < 3; ++a) tip.push_back(a < Dim ? solver.axis().tip_mm()[a] : 0.0);
+  const nlohmann::ordered_json summary{
+      {"program", "rootsoil"},
+      {"version", ROOTSOIL_VERSION},
+      {"scene", scene_.scene.name},
+      {"status", status},
+      {"time_h", tissue.time_h},
+      {"steps", solver.steps()},
+      {"cells_start", cells_start_},
+      {"cells_end", tissue.cells.size()},
+      {"divisions", divisions()},
+      {"tip_mm", tip},
+      {"length_mm", solver.axis().length_mm()},
+      {"wall_s", wall_s_},
+      {"wall_s_by_effect", solver.clock().seconds()},
+      {"pairs", tissue.pairs.pairs.size()},
+      {"pairs_per_s", wall_s_ > 0.0 ? pair_steps_ / wall_s_ : 0.0},
+      {"peak_memory_mb", peak_memory_mb()},
+      {"threads", omp_get_max_threads()},
+      {"dt_h", {{"min", tissue.step_h}, {"mean", tissue.step_h}, {"max", tissue.step_h}}},
+      {"accuracy", scene_.numerics.accuracy},
+      {"inertia_error_max", inertia_error_max_},
+      {"momentum_residual", momentum_residual_max_},
+      {"degenerate_cells_max", degenerate_max_},
+      {"cell_file_volume_scale", built_.initial.volume_scale},
+      {"active_effects", active_effects(scene_)},
+      {"fields", fields}};
+  write_text_atomically(folder_ / "summary.json", summary.dump(2) + "\n");
+}
+
+template <int Dim>
+ExitStatus Run<Dim>::go() {
+  Solver<Dim>& solver = model().solver;
+  const Tissue<Dim>& tissue = solver.tissue();
+  const std::int64_t total = steps_per(scene_.scene.duration_h);
+  const std::int64_t per_frame = steps_per(scene_.output.every_h);
+  const std::int64_t per_checkpoint = steps_per(scene_.output.checkpoint_every_h);
+  const std::int64_t until = options_.until_h ? std::min(total, steps_per(*options_.until_h)) : total;
+  const ClosedFormFlow theory = closed_form_flow<Dim>(scene_, solver.axis().length_mm());
+  log_.info("{}: {} cells, {:.4g} h in {} steps of {:.4g} h, {} threads", scene_.scene.name, tissue.cells.size(),
+            scene_.scene.duration_h, total, tissue.step_h, omp_get_max_threads());
+  if (theory.tip_speed_mm_h > 0.0) {
+    log_.info("closed form: tip speed {:.4f} mm/h, peak strain rate {:.3f} /h", theory.tip_speed_mm_h,
+              theory.peak_rate_per_h);
+  }
+  if (built_.initial.volume_scale != 1.0) {
+    log_.info("volumes of the measured ellipsoids times {:.3f}, so that they fill the tissue",
+              built_.initial.volume_scale);
+  }
+  if (options_.resume) log_.info("resumed at {:.4g} h", tissue.time_h);
+
+  SignalGuard signals;
+  Progress progress(options_.quiet, scene_.scene.duration_h);
+  const auto start = std::chrono::steady_clock::now();
+  const auto measure_wall = [&] {
+    wall_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  if (solver.steps() == 0) {
+    record();
+    write_checkpoint_file();
+  }
+  try {
+    while (solver.steps() < until && !stop_requested) {
+      const std::int64_t done = solver.steps();
+      // windows end at output times, so that where they lie does not depend on where a run was interrupted
+      const std::int64_t next_mark = std::min(total, (done / per_frame + 1) * per_frame);
+      const int steps = static_cast<int>(std::min<std::int64_t>(scene_.numerics.window_steps, next_mark - done));
+      solver.advance_window(steps);
+      steps_done_ += steps;
+      pair_steps_ += static_cast<double>(steps) * static_cast<double>(tissue.pairs.pairs.size());
+      if (solver.gradient_report().degenerate > degenerate_max_) {
+        degenerate_max_ = solver.gradient_report().degenerate;
+        log_.note("{} cells have too few neighbours for a full gradient at {:.4g} h", degenerate_max_, tissue.time_h);
+      }
+      measure_wall();
+      const bool frame_due = solver.steps() % per_frame == 0 || solver.steps() == total;
+      if (frame_due) record();
+      // at the first window that ends on or after the time that is due
+      if (solver.steps() / per_checkpoint > done / per_checkpoint || solver.steps() == total) write_checkpoint_file();
+      progress.show({tissue.time_h, static_cast<std::int64_t>(tissue.cells.size()), solver.axis().length_mm(),
+                     static_cast<double>(steps_done_) / std::max(wall_s_, 1e-9), inertia_error_max_,
+                     wall_s_ * static_cast<double>(until - solver.steps()) / static_cast<double>(steps_done_)});
+    }
+  } catch (const UnphysicalError& error) {
+    progress.end();
+    measure_wall();
+    write_summary("unphysical");
+    log_.error("{}\n  kept: frames until {:.5g} h and the last good checkpoint of {:.5g} h in {}", error.what(),
+               series_->frames().empty() ? 0.0 : series_->frames().back().time_h, checkpoint_h_, folder_.string());
+    return ExitStatus::unphysical;
+  }
+  progress.end();
+  measure_wall();
+  if (solver.steps() < total) {
+    write_checkpoint_file();
+    write_summary(stop_requested ? "interrupted" : "paused");
+    log_.info("{} at {:.4g} h; checkpoint written, --resume goes on", stop_requested ? "interrupted" : "paused",
+              tissue.time_h);
+    return stop_requested ? ExitStatus::interrupted : ExitStatus::done;
+  }
+  series_->finish();
+  write_summary("done");
+  log_.info("done: {} cells after {} divisions, root {:.4f} mm, inertia error at most {:.2g} of p, {:.1f} s, {:.0f} MB",
+            tissue.cells.size(), divisions(), solver.axis().length_mm(), inertia_error_max_, wall_s_, peak_memory_mb());
+  if (scene_.output.picture) log_.info("{}", draw_picture(folder_));
+  return ExitStatus::done;
+}
+
+template <int Dim>
+int run_in_folder(const Scene& scene, const RunOptions& options) {
+  refuse_unstable_law<Dim>(scene);  // before the folder is touched
+  const RunFolder folder = claim_run_folder(options.out, options.resume);
+  return static_cast<int>(Run<Dim>(scene, options, folder).go());
+}
+
+}  // namespace
+
+int run_scene(const Scene& scene, const RunOptions& options) {
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  return scene.scene.dimension == 2 ? run_in_folder<2>(scene, options) : run_in_folder<3>(scene, options);
+}
+
+}  // namespace rootsoil

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "root_sph/tissue/laws.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "root_sph/tissue/closed_form.hpp"
+#include "root_sph/tissue/hyperbolicity.hpp"
+#include "tests/support/clouds.hpp"
+
+namespace rootsoil {
+namespace {
+
+using test::Random;
+
+ElasticConstants with_radial_modulus(double E_radial_MPa) { return {1020.0, E_radial_MPa, 0.06, 0.3, 481.0}; }
+
+template <int Dim>
+Voigt<Dim> isotropic(double value) {
+  Voigt<Dim> s = Voigt<Dim>::Zero();
+  s.template head<Dim>().setConstant(value);
+  return s;
+}
+
+template <class Dimension>
+class ElasticGrowth : public testing::Test {};
+TYPED_TEST_SUITE(ElasticGrowth, test::BothDimensions, test::DimensionName);
+
+TYPED_TEST(ElasticGrowth, RelaxesAHeldCellByTheImplicitFactor) {
+  constexpr int dim = TypeParam::value;
+  const Stiffness<dim> k = stiffness<dim>(with_radial_modulus(5000.0));
+  Random random(1);
+  const Voigt<dim> start = isotropic<dim>(2.0) + random.matrix<Voigt<dim>>();
+  Voigt<dim> stress = start;
+  double factor = 1.0;
+  for (int step = 0; step < 50; ++step) {
+    elastic_growth_step<dim>(k, Voigt<dim>::Zero(), 0.03, stress);
+    factor /= 1.03;
+    // normal stresses and shear relax alike
+    EXPECT_LT((stress - factor * start).norm(), 1e-14 * start.norm());
+  }
+}
+
+TYPED_TEST(ElasticGrowth, SmallStepsRelaxExponentially) {
+  constexpr int dim = TypeParam::value;
+  const Stiffness<dim> k = stiffness<dim>(with_radial_modulus(5000.0));
+  Voigt<dim> stress = isotropic<dim>(1.0);
+  constexpr int steps = 100000;
+  for (int step = 0; step < steps; ++step) elastic_growth_step<dim>(k, Voigt<dim>::Zero(), 1.0 / steps, stress);
+  EXPECT_NEAR(stress[0], std::exp(-1.0), 1.0 / steps);  // first order in the step
+}
+
+TYPED_TEST(ElasticGrowth, DoesNotGrowInCompressionOrWithoutSoftening) {
+  constexpr int dim = TypeParam::value;
+  const Stiffness<dim> k = stiffness<dim>(with_radial_modulus(5000.0));
+  Random random(2);
+  Voigt<dim> strain = 1e-4 * random.matrix<Voigt<dim>>();
+  strain.template head<dim>() = -strain.template head<dim>().cwiseAbs();
+  Voigt<dim> stress = isotropic<dim>(-1.0);
+  const Voigt<dim> elastic = stress + elastic_stress<dim>(k, strain);
+  EXPECT_EQ(elastic_growth_step<dim>(k, strain, 0.1, stress), 0.0);
+  EXPECT_EQ(stress, elastic);
+
+  stress = isotropic<dim>(1.0);
+  const Voigt<dim> also_elastic = stress + elastic_stress<dim>(k, strain);
+  EXPECT_EQ(elastic_growth_step<dim>(k, strain, 0.0, stress), 0.0);
+  EXPECT_EQ(stress, also_elastic);
+}
+
+TYPED_TEST(ElasticGrowth, GainsTheTraceOfTheGrowthStrain) {
+  constexpr int dim = TypeParam::value;
+  const ElasticConstants constants = with_radial_modulus(5000.0);
+  const Stiffness<dim> k = stiffness<dim>(constants);
+  Random random(3);
+  Voigt<dim> stress = isotropic<dim>(3.0) + random.matrix<Voigt<dim>>();
+  const Voigt<dim> before = stress;
+  const Voigt<dim> strain = 1e-4 * random.matrix<Voigt<dim>>();
+  const double gained = elastic_growth_step<dim>(k, strain, 0.05, stress);
+  // growth strain = total strain - change of the elastic strain S : sigma
+  const Voigt<dim> grown = strain - compliance<dim>(constants) * (stress - before);
+  EXPECT_NEAR(gained, grown.template head<dim>().sum(), 1e-16);
+  EXPECT_GT(gained, 0.0);
+  // and its direction is S : sigma
+  EXPECT_LT((grown - 0.05 * compliance<dim>(constants) * stress).norm(), 1e-16);
+}
+
+TYPED_TEST(ElasticGrowth, GrowsSteadilyAtTheRateOfTheClosedForm) {
+  constexpr int dim = TypeParam::value;
+  const Stiffness<dim> k = stiffness<dim>(with_radial_modulus(15000.0));
+  constexpr double p = 0.8, lambda_over_rho0 = 400.0, dt = 1e-3;
+  const AxialRadial rate = growth_rate<dim>(k, p, lambda_over_rho0);
+  Voigt<dim> strain = isotropic<dim>(dt * rate.radial);
+  strain[0] = dt * rate.axial;
+  // the stress p 1 stays under exactly this strain rate
+  Voigt<dim> stress = isotropic<dim>(p);
+  double gained = elastic_growth_step<dim>(k, strain, dt * lambda_over_rho0, stress);
+  EXPECT_LT((stress - isotropic<dim>(p)).norm(), 1e-13);
+  EXPECT_NEAR(gained, dt * (rate.axial + (dim - 1) * rate.radial), 1e-16);
+  // and is reached from any other tension
+  stress = isotropic<dim>(0.3);
+  stress[voigt_size<dim> - 1] = 0.2;
+  for (int step = 0; step < 200; ++step) {
+    gained = elastic_growth_step<dim>(k, strain, dt * lambda_over_rho0, stress);
+  }
+  EXPECT_LT((stress - isotropic<dim>(p)).norm(), 1e-13);
+}
+
+TYPED_TEST(ElasticGrowth, NeverLosesMass) {
+  constexpr int dim = TypeParam::value;
+  const Stiffness<dim> k = stiffness<dim>(with_radial_modulus(1020.0));
+  // a cell in slight tension that is compressed within the step: D_g is zero where tr(S : sigma) is not positive
+  Voigt<dim> stress = isotropic<dim>(0.01);
+  EXPECT_GE(elastic_growth_step<dim>(k, isotropic<dim>(-1e-3), 0.1, stress), 0.0);
+}
+
+template <class Dimension>
+class PressureDeviator : public testing::Test {};
+TYPED_TEST_SUITE(PressureDeviator, test::BothDimensions, test::DimensionName);
+
+TYPED_TEST(PressureDeviator, HasThePressureOfEquation3) {
+  constexpr int dim = TypeParam::value;
+  const Stiffness<dim> k = stiffness<dim>(with_radial_modulus(5000.0));
+  for (const double density_ratio : {0.9, 1.0, 1.2}) {
+    Voigt<dim> deviatoric = Voigt<dim>::Zero();
+    const Voigt<dim> stress = pressure_deviator_step<dim>(k, Voigt<dim>::Zero(), density_ratio, deviatoric);
+    EXPECT_LT((stress - isotropic<dim>(-bulk_modulus<dim>(k) * (density_ratio - 1.0))).norm(), 1e-12);
+    EXPECT_EQ(deviatoric, Voigt<dim>(Voigt<dim>::Zero()));
+  }
+}
+
+TYPED_TEST(PressureDeviator, AddsTheDeviatorOfTheElasticStress) {
+  constexpr int dim = TypeParam::value;
+  const Stiffness<dim> k = stiffness<dim>(with_radial_modulus(5000.0));
+  Random random(5);
+  const Voigt<dim> old = deviator<dim>(random.matrix<Voigt<dim>>());
+  const Voigt<dim> strain = 1e-3 * random.matrix<Voigt<dim>>();
+  Voigt<dim> deviatoric = old;
+  const Voigt<dim> stress = pressure_deviator_step<dim>(k, strain, 0.98, deviatoric);
+  EXPECT_LT((deviatoric - old - deviator<dim>(elastic_stress<dim>(k, strain))).norm(), 1e-14);
+  EXPECT_NEAR(stress.template head<dim>().mean(), 0.02 * bulk_modulus<dim>(k), 1e-12);
+  EXPECT_LT((deviator<dim>(stress) - deviatoric).norm(), 1e-13);
+}
+
+TEST(MassSource, FollowsEquation2InTensionOnly) {
+  EXPECT_NEAR(mass_source(4e5, 0.8), 4e5 * 0.25, 1e-9);
+  EXPECT_EQ(mass_source(4e5, 1.0), 0.0);
+  EXPECT_EQ(mass_source(4e5, 1.1), 0.0);
+}
+
+// PHYSICS.md section 3: E_A = 1020 MPa, G = 481 MPa, nu_A = 0.06, the paper's law to the letter, in the plane.
+TEST(Hyperbolicity, OfThePressureDeviatorLawIsLostWithTheMeasuredGrowthRates) {
+  struct Case {
+    double ratio, imaginary_MPa, angle_deg;
+  };
+  for (const Case& c : {Case{4.0, 324.0, 33.0}, Case{8.0, 694.0, -1.0}, Case{15.0, 1057.0, -1.0}}) {
+    const auto tangent = pressure_deviator_tangent<2>(with_radial_modulus(1020.0 * c.ratio));
+    const AcousticFinding finding = scan_acoustic_tensor<2>(tangent);
+    EXPECT_FALSE(finding.hyperbolic);
+    EXPECT_NEAR(finding.largest_imaginary_MPa, c.imaginary_MPa, 1.0) << "E_R/E_A = " << c.ratio;
+    if (c.angle_deg >= 0.0) {
+      // the acoustic tensor is the same at the mirrored direction
+      EXPECT_NEAR(std::min(finding.angle_deg, 180.0 - finding.angle_deg), c.angle_deg, 1.0);
+    }
+  }
+}
+
+template <class Dimension>
+class Hyperbolicity : public testing::Test {};
+TYPED_TEST_SUITE(Hyperbolicity, test::BothDimensions, test::DimensionName);
+
+TYPED_TEST(Hyperbolicity, OfThePressureDeviatorLawIsKeptByIsotropicTissue) {
+  constexpr int dim = TypeParam::value;
+  // G = E/(2 (1 + nu)): isotropic indeed, K 1(x)1 + Lambda C is symmetric
+  const ElasticConstants isotropic_tissue{1020.0, 1020.0, 0.06, 0.06, 1020.0 / 2.12};
+  EXPECT_TRUE(scan_acoustic_tensor<dim>(pressure_deviator_tangent<dim>(isotropic_tissue)).hyperbolic);
+  EXPECT_TRUE(scan_acoustic_tensor<dim>(pressure_deviator_tangent<dim>(with_radial_modulus(1020.0))).hyperbolic);
+}
+
+TYPED_TEST(Hyperbolicity, OfThePressureDeviatorLawIsLostByStronglyAnisotropicTissue) {
+  constexpr int dim = TypeParam::value;
+  EXPECT_FALSE(scan_acoustic_tensor<dim>(pressure_deviator_tangent<dim>(with_radial_modulus(15000.0))).hyperbolic);
+}
+
+TYPED_TEST(Hyperbolicity, OfElasticGrowthIsAlwaysKept) {
+  constexpr int dim = TypeParam::value;
+  for (const double ratio : {0.2, 1.0, 4.0, 8.0, 15.0, 50.0}) {
+    for (const double shear : {48.0, 481.0, 85000.0}) {
+      ElasticConstants constants = with_radial_modulus(1020.0 * ratio);
+      constants.G_MPa = shear;
+      const AcousticFinding finding = scan_acoustic_tensor<dim>(elastic_growth_tangent<dim>(constants));
+      EXPECT_TRUE(finding.hyperbolic) << "E_R/E_A = " << ratio << ", G = " << shear;
+      EXPECT_GT(finding.smallest_real_MPa, 0.0);
+    }
+  }
+}
+
+TYPED_TEST(Hyperbolicity, TangentsAreThoseOfTheLaws) {
+  constexpr int dim = TypeParam::value;
+  const ElasticConstants constants = with_radial_modulus(8000.0);
+  const Stiffness<dim> k = stiffness<dim>(constants);
+  const Voigt<dim> strain = 1e-6 * Random(6).matrix<Voigt<dim>>();
+  Voigt<dim> stress = Voigt<dim>::Zero();
+  elastic_growth_step<dim>(k, strain, 0.0, stress);
+  EXPECT_LT((stress - elastic_growth_tangent<dim>(constants) * strain).norm(), 1e-12 * stress.norm());
+  // without growth rho/rho0 = 1 - tr(strain) to first order
+  Voigt<dim> deviatoric = Voigt<dim>::Zero();
+  stress = pressure_deviator_step<dim>(k, strain, 1.0 - strain.template head<dim>().sum(), deviatoric);
+  // the 1 in rho/rho0 leaves 1e-16/1e-6 of the strain as rounding
+  EXPECT_LT((stress - pressure_deviator_tangent<dim>(constants) * strain).norm(), 1e-9 * stress.norm());
+}
+
+}  // namespace
+}  // namespace rootsoil
