@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The command line. What the commands do is in root_sph/scene.
 #include <CLI/CLI.hpp>
+#include <unistd.h>
+
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -32,6 +35,16 @@ const CLI::Validator positive(
     },
     "NUMBER");
 
+/// Many more than a machine has cores only cost memory: threads beyond some thousands end the program.
+const CLI::Validator thread_count(
+    [](const std::string& text) {
+      constexpr int most = 256;
+      int number = 0;
+      const bool good = CLI::detail::lexical_cast(text, number) && number >= 1 && number <= most;
+      return good ? std::string() : text + " is not a whole number from 1 to " + std::to_string(most);
+    },
+    "NUMBER");
+
 /// CLI11 answers a misspelt command with "a subcommand is required".
 void check_command(const CLI::App& app, const std::string& given) {
   std::vector<std::string> commands;
@@ -49,6 +62,9 @@ void check_command(const CLI::App& app, const std::string& given) {
 int command_line(int argc, char** argv) {
   CLI::App app{"rootsoil " ROOTSOIL_VERSION ": mechanical growth of plant roots, cell by cell", "rootsoil"};
   app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& e) {
+    return std::string("rootsoil: ") + e.what() + "\n  to do:   --help, also after a command, lists what there is\n";
+  });
   std::function<int()> command;
 
   std::filesystem::path scene_file;
@@ -58,7 +74,7 @@ int command_line(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "Run a scene");
   run->add_option("SCENE", scene_file, "Scene file (TOML)")->required();
   run->add_option("--out", options.out, "Folder of the run; otherwise runs/<scene name>");
-  run->add_option("--threads", options.threads, "Number of threads; otherwise all")->check(positive);
+  run->add_option("--threads", options.threads, "Number of threads; otherwise all")->check(thread_count);
   run->add_flag("--resume", options.resume, "Go on from the last checkpoint in the folder");
   run->add_option("--set", overrides, "section.key=value, replaces what the scene says; can be repeated")
       ->allow_extra_args(false);
@@ -120,9 +136,19 @@ int command_line(int argc, char** argv) {
   return command();
 }
 
+/// Threads that wait for each other should give way soon: libgomp's default lets them spin for milliseconds, which on a
+/// machine shared with others costs ten times the work (measured). It reads the setting when it is loaded, so
+/// the program starts itself once more with it. Whoever sets one of the variables decides.
+void wait_politely(char** argv) {
+  if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY")) return;
+  setenv("GOMP_SPINCOUNT", "1000", 1);
+  execv("/proc/self/exe", argv);  // on failure go on as we are
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  wait_politely(argv);
   const auto report = [](const std::string& text, int status) {
     std::cerr << "rootsoil: " << text << '\n';
     return status;
@@ -137,6 +163,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return report("not enough memory; fewer cells need less", our_mistake);
   } catch (const std::exception& e) {
-    return report(std::string("internal error: ") + e.what(), our_mistake);
+    const std::string what = e.what(), kind = "internal error: ";
+    return report(what.starts_with(kind) ? what : kind + what, our_mistake);
   }
 }

@@ -58,7 +58,7 @@ struct Tissue {
   std::vector<PairGradient<Dim>> gradients;
   std::vector<double> kernel;  ///< W of each pair, 1/mm^Dim
 
-  Field<Dim, double>* steady_acceleration = nullptr;  ///< along the root axis, mm/h^2; null: no compensation
+  Field<Dim, Vec<Dim>>* body_acceleration = nullptr;  ///< mm/h^2, constant over a window; null: none
 
   double time_h = 0.0;
   double step_h = 0.0;

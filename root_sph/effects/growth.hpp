@@ -20,12 +20,4 @@ class GrowthEffect final : public Effect<Dim> {
   Field<Dim, double>& softening_;
 };
 
-/// Cancels the leading error of numerical inertia in steady growth: the axial acceleration that the flow must have,
-/// e(L) v(L) - e(s) v(s), is given to the cells rather than paid for by stress (PHYSICS.md 5.9).
-template <int Dim>
-class InertiaCompensationEffect final : public Effect<Dim> {
- public:
-  explicit InertiaCompensationEffect(Solver<Dim>& solver);
-};
-
 }  // namespace rootsoil

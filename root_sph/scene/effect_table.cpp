@@ -4,6 +4,7 @@
 #include "root_sph/effects/anisotropy.hpp"
 #include "root_sph/effects/division.hpp"
 #include "root_sph/effects/growth.hpp"
+#include "root_sph/effects/inertia_relief.hpp"
 #include "root_sph/effects/obstacle.hpp"
 #include "root_sph/effects/pressure.hpp"
 #include "root_sph/effects/probe.hpp"
@@ -44,6 +45,11 @@ void add_division(const Scene& scene, Model<Dim>& model) {
 template <int Dim>
 void add_inertia_compensation(const Scene&, Model<Dim>& model) {
   add<Dim, InertiaCompensationEffect<Dim>>(model);
+}
+
+template <int Dim>
+void add_midline_damping(const Scene& scene, Model<Dim>& model) {
+  add<Dim, MidlineDampingEffect<Dim>>(model, midline_damping_per_h(scene));
 }
 
 template <int Dim>
@@ -107,6 +113,9 @@ constexpr EffectEntry table[] = {
        return s.growth.has_value() && s.numerics.inertia_compensation && s.root.base == "clamped";
      },
      add_inertia_compensation<2>, add_inertia_compensation<3>},
+    {"midline damping", "[growth], [numerics] midline_damping_per_h",
+     "keeps numerical inertia from bending a long free root (hose flutter)", "",
+     [](const Scene& s) { return midline_damping_per_h(s) > 0.0; }, add_midline_damping<2>, add_midline_damping<3>},
     {"division", "[division]", "cells divide across their longest axis (4.2, Eq. 6)", "",
      [](const Scene& s) { return s.division.has_value(); }, add_division<2>, add_division<3>},
     {"clamped base", "[root] base", "cells at the base are held", "",
@@ -176,6 +185,13 @@ DivisionThresholdProfile division_profile(const Scene& scene) {
 ElasticConstants elastic_constants(const Scene& scene) {
   const TissueSection& t = scene.tissue;
   return {t.E_axial_MPa, t.E_axial_MPa, t.nu_axial, t.nu_radial, t.G_MPa};
+}
+
+double midline_damping_per_h(const Scene& scene) {
+  if (scene.numerics.midline_damping_per_h) return *scene.numerics.midline_damping_per_h;
+  // where the root is to be bent by contact, nothing but contact and the tissue may resist
+  constexpr double faster_than_flutter_per_h = 5.0;
+  return scene.growth && scene.root.base == "clamped" && scene.obstacles.empty() ? faster_than_flutter_per_h : 0.0;
 }
 
 double initial_pressure_MPa(const Scene& scene) {

@@ -41,6 +41,8 @@ RadialModulusProfile radial_modulus_profile(const Scene& scene, double p_MPa);
 SofteningProfile softening_profile(const Scene& scene, double p_MPa);
 DivisionThresholdProfile division_profile(const Scene& scene);
 ElasticConstants elastic_constants(const Scene& scene);
+/// numerics.midline_damping_per_h, or what suits the scene.
+double midline_damping_per_h(const Scene& scene);
 double initial_pressure_MPa(const Scene& scene);
 
 }  // namespace rootsoil

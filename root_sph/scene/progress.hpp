@@ -19,6 +19,9 @@ struct ProgressState {
 class Progress {
  public:
   Progress(bool quiet, double duration_h);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress() { end(); }  ///< also when an error leaves the run: its message starts on a new line
   void show(const ProgressState& state);
   /// Ends the line on a terminal.
   void end();

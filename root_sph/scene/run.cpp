@@ -125,7 +125,9 @@ Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& fo
   std::optional<double> continue_h;
   if (options.resume) {
     resume_from_checkpoint();
-    continue_h = tissue.time_h;
+    if (model().solver.steps() > 0) continue_h = tissue.time_h;  // at 0 everything is written once more
+  } else {
+    write_checkpoint_file();  // first of all: killed at any later instant, --resume goes on
   }
   write_text_atomically(folder_ / "scene.toml", resolved_toml(scene_));
   series_ = std::make_unique<SeriesWriter>(
@@ -187,7 +189,9 @@ void Run<Dim>::resume_from_checkpoint() {
   const Checkpoint checkpoint = read_checkpoint(path);
   if (checkpoint.scene_digest != scene_digest(scene_) || checkpoint.dimension != Dim) {
     throw InputError({scene_.file, 0, "--resume", "the checkpoint in this folder belongs to another scene",
-                      path.string(), "the scene that began this run; only duration_h and [output] may differ",
+                      path.string(),
+                      "the scene that began this run, with its --accuracy and --set; only duration_h and the times in "
+                      "[output] may differ, where the step stays the same",
                       "take " + (folder_ / "scene.toml").string() + ", or another --out"});
   }
   if (checkpoint.program_version != ROOTSOIL_VERSION) {
@@ -273,10 +277,7 @@ ExitStatus Run<Dim>::go() {
   const auto measure_wall = [&] {
     wall_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  if (solver.steps() == 0) {
-    record();
-    write_checkpoint_file();
-  }
+  if (solver.steps() == 0) record();
   try {
     while (solver.steps() < until && !stop_requested) {
       const std::int64_t done = solver.steps();

@@ -124,6 +124,7 @@ struct NumericsSection {
   std::string inertia = "tensor";      ///< "tensor" | "scalar"
   bool inertia_compensation = true;
   std::optional<double> mass_damping_per_h;  ///< absent: 0 with growth, twice the lowest frequency without
+  std::optional<double> midline_damping_per_h;  ///< absent: 5 for a clamped root that grows without obstacles, else 0
   double artificial_viscosity = 0.0;         ///< bulk pair viscosity (the authors' code uses 0.6-1)
   std::string start = "equilibrium";         ///< "equilibrium": stress p and the closed form's velocity; "rest"
 };

@@ -461,6 +461,9 @@ std::vector<SectionSpec> make_schema() {
         "Cancel the leading inertia error of steady growth.", "PHYSICS 5.9"),
     key(&Nu::mass_damping_per_h, "mass_damping_per_h", "1/h", at_least(0),
         "Damping that settles a root without growth.", "PHYSICS 5.11").defaults_to("growth: 0, else 2 omega"),
+    key(&Nu::midline_damping_per_h, "midline_damping_per_h", "1/h", at_least(0),
+        "Damping of the midline's lateral motion, against hose flutter.", "docs/decisions/0003")
+        .defaults_to("growth, no obstacle: 5"),
     key(&Nu::artificial_viscosity, "artificial_viscosity", "-", at_least(0), "Bulk pair viscosity.", "PHYSICS 6"),
     key(&Nu::start, "start", "-", one_of({"equilibrium", "rest"}),
         "equilibrium: stress p and the closed form's velocity; rest: the paper's.", "PHYSICS 5.9, paper 4.4"),

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Division of a tissue that has every field a scene can ask for (the paper's 4.2).
+#include "root_sph/effects/division.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include <vector>
 
 #include "root_sph/effects/anisotropy.hpp"
-#include "root_sph/effects/division.hpp"
 #include "root_sph/effects/growth.hpp"
 #include "root_sph/effects/obstacle.hpp"
 #include "root_sph/effects/probe.hpp"
@@ -91,11 +92,11 @@ TYPED_TEST(CellDivision, EveryFieldFollowsItsRule) {
   ASSERT_EQ(cells.size(), 10u);
   const auto first = numbers_of<dim>(cells, 4), second = numbers_of<dim>(cells, 9);
 
-  const std::vector<std::string> copied{"velocity", "material_stress", "frame", "clamped", "slip wall", "probe p",
-                                        "deviatoric_stress"};
+  const std::vector<std::string> copied{"velocity", "material_stress",  "frame", "clamped", "slip wall",
+                                        "probe p",  "deviatoric_stress"};
   const std::vector<std::string> halved{"volume", "mass", "contact wall"};
-  const std::vector<std::string> checked_elsewhere{"position", "shape", "distance_to_tip", "generation", "cell_id",
-                                                   "parent_id", "window_index"};
+  const std::vector<std::string> checked_elsewhere{"position", "shape",     "distance_to_tip", "generation",
+                                                   "cell_id",  "parent_id", "window_index"};
   for (const auto& field : cells.fields()) {
     const std::string& name = field->info().name;
     const auto in = [&](const std::vector<std::string>& names) {

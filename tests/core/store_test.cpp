@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "root_sph/core/particle_store.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <stdexcept>
 #include <vector>
 
+#include "root_sph/core/particle_store.hpp"
 #include "tests/support/clouds.hpp"
 
 namespace rootsoil {
@@ -20,17 +19,19 @@ concept DeclaresWithRule = requires(Store& store, FieldInfo info) {
   store.template declare<double>(info, on_division::halve<2, double>);
 };
 template <class Store>
-concept DeclaresWithoutRule = requires(Store& store, FieldInfo info) { store.template declare<double>(info); };
+concept DeclaresWithoutRule = requires(Store& store, FieldInfo info) {
+  store.template declare<double>(info);
+};
 static_assert(DeclaresWithRule<ParticleStore<2>>);
 static_assert(!DeclaresWithoutRule<ParticleStore<2>>);
 
 template <class Dimension>
 class Store : public testing::Test {
  protected:
-  static constexpr int dim = Dimension::value;
+  static constexpr int Dim = Dimension::value;
 
   /// Every column of every cell gets its own number.
-  static void number(ParticleStore<dim>& store) {
+  static void number(ParticleStore<Dim>& store) {
     double next = 1.0;
     for (const auto& field : store.fields()) {
       for (double& x : field->reals()) x = next++;

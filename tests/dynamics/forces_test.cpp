@@ -93,8 +93,8 @@ TYPED_TEST(Forces, DoTheWorkOfTheStresses) {
     compute_stress_forces<dim>(tissue);
     double inside = 0.0, outside = 0.0, magnitudes = 0.0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const Mat<dim> total = cells.frame[i] * to_matrix<dim>(cells.stress[i]) * cells.frame[i].transpose() -
-                             0.7 * Mat<dim>::Identity();
+      const Mat<dim> total =
+          cells.frame[i] * to_matrix<dim>(cells.stress[i]) * cells.frame[i].transpose() - 0.7 * Mat<dim>::Identity();
       const Mat<dim> l = tissue.velocity_gradient[i] * tissue.deformation[i].inverse();
       const double work = cells.volume[i] * total.cwiseProduct(l).sum();
       inside += work;
@@ -142,6 +142,7 @@ struct BlockWithTerms {
     terms = make_pair_terms<dim>(tissue.cells, 1020.0, non_affine ? std::optional(0.5) : std::nullopt, 0.05,
                                  viscous ? 0.3 : 0.0);
     make_irregular_block<dim>(tissue, random);
+    for (std::int64_t& index : tissue.window_index.values()) index = -1;  // there was no window before
     start_window({}, 0.0);
     for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
       if (terms.damping) (*terms.damping)[i] = random.uniform(0.5, 1.0);
@@ -225,7 +226,9 @@ TYPED_TEST(PairForces, AllKindsHaveTheForcesOfTheirFormulas) {
       expected[i] += force;
       expected[j] -= force;
       largest = std::max(largest, force.norm());
-      if (non_affine) EXPECT_LT((block.terms.non_affine->slip_mm[k] - slip[k] - kept * v).norm(), 1e-15);
+      if (non_affine) {
+        EXPECT_LT((block.terms.non_affine->slip_mm[k] - slip[k] - kept * v).norm(), 1e-15);
+      }
     }
     for (std::size_t i = 0; i < expected.size(); ++i) {
       EXPECT_LT((block.tissue.force[i] - expected[i]).norm(), 1e-13 * largest);
@@ -276,8 +279,8 @@ TYPED_TEST(PairForces, NonAffineDisplacementTurnsWithTheTissue) {
 TYPED_TEST(PairForces, NonAffineDisplacementRelaxesWhereTissueGrows) {
   constexpr int dim = TypeParam::value;
   BlockWithTerms<dim> block(true, false);
-  block.tissue.material.softening = &block.tissue.cells.template declare<double>(
-      {"softening", "ug/(mm^3 h)", ""}, on_division::recomputed<dim, double>);
+  block.tissue.material.softening = &block.tissue.cells.template declare<double>({"softening", "ug/(mm^3 h)", ""},
+                                                                                 on_division::recomputed<dim, double>);
   for (double& lambda : block.tissue.material.softening->values()) lambda = block.random.uniform(0.0, 4e5);
   block.compute_forces({1e-3, 1e-3});
   const std::vector<Vec<dim>> before = block.terms.non_affine->slip_mm;

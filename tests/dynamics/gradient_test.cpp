@@ -91,7 +91,8 @@ TYPED_TEST(Gradient, OfAConstantFieldIsZeroInEveryMode) {
   for (const GradientMode mode : {GradientMode::plain, GradientMode::linear, GradientMode::quadratic_at_surface}) {
     GradientReport report;
     const auto found = gradients_of<dim>(
-        irregular_blocks<dim>()[0], mode, 1.5, [](const Vec<dim>&) { return Vec<dim>(Vec<dim>::Constant(0.3)); }, report);
+        irregular_blocks<dim>()[0], mode, 1.5, [](const Vec<dim>&) { return Vec<dim>(Vec<dim>::Constant(0.3)); },
+        report);
     for (const Mat<dim>& gradient : found) EXPECT_EQ(gradient, Mat<dim>(Mat<dim>::Zero()));
   }
 }
@@ -114,7 +115,8 @@ TYPED_TEST(Gradient, OfTheQuadraticModeIsExactForQuadraticFields) {
     EXPECT_EQ(report.quadratic, static_cast<std::int64_t>(cloud.size()));
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       Mat<dim> exact = linear;
-      for (int a = 0; a < dim; ++a) exact.row(a) += ((second[a] + second[a].transpose()) * cloud.position[i]).transpose();
+      for (int a = 0; a < dim; ++a)
+        exact.row(a) += ((second[a] + second[a].transpose()) * cloud.position[i]).transpose();
       // the moment matrices have condition numbers of about 1e3
       EXPECT_LT((found[i] - exact).norm(), 1e-10 * exact.norm()) << "cell " << i;
     }
@@ -152,8 +154,8 @@ TYPED_TEST(Gradient, OfALineOfCellsIsExactAlongItAndZeroAcross) {
   const Mat<dim> exact = Random(7).matrix<Mat<dim>>();
   for (const GradientMode mode : corrected_modes) {
     GradientReport report;
-    const auto found =
-        gradients_of<dim>(line, mode, 1.5, [&](const Vec<dim>& x) { return Vec<dim>(exact * x); }, report);
+    const auto found = gradients_of<dim>(
+        line, mode, 1.5, [&](const Vec<dim>& x) { return Vec<dim>(exact * x); }, report);
     EXPECT_EQ(report.degenerate, 12);
     for (const Mat<dim>& gradient : found) {
       EXPECT_LT((gradient - exact * along * along.transpose()).norm(), 1e-12);

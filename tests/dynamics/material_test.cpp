@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Kinematics of cells, and the cell loop, under imposed motions.
-#include "root_sph/dynamics/material_update.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "root_sph/dynamics/material_update.hpp"
 #include "root_sph/dynamics/solver.hpp"
 #include "root_sph/tissue/laws.hpp"
 #include "tests/support/block.hpp"
@@ -22,8 +21,8 @@ using test::Random;
 
 constexpr double dt = 1e-3;
 
-/// A free block whose cells are taken along x(t) = motion(t) x(0): before every step each cell gets the velocity
-/// that takes it there.
+/// A block with free edges whose cells are taken along x(t) = motion(t) x(0): before every step each cell gets the
+/// velocity of its way in this step, and being clamped it keeps it whatever the forces.
 template <int Dim>
 struct MovedBlock {
   Solver<Dim> solver;
@@ -44,14 +43,14 @@ struct MovedBlock {
     counts[0] = Dim == 2 ? 14 : 7;
     test::fill<Dim>(solver.tissue(), test::lattice<Dim>(counts, 0.01, random, 0.25, 0.3), test::table_1(15000.0));
     start = solver.tissue().cells.position.values();
+    for (std::int64_t& clamped : solver.tissue().cells.clamped.values()) clamped = 1;
     for (Mat<Dim>& frame : solver.tissue().cells.frame.values()) frame = random.rotation<Dim>();
     solver.axis().start(solver.tissue());
     solver.hooks().step_start.emplace_back("motion", [this, motion = std::move(motion)](Tissue<Dim>& tissue) {
+      const Mat<Dim> moved = motion(step + 1) - motion(step);
       ++step;
-      const Mat<Dim> f = motion(step);
       for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
-        const Vec<Dim> target = f * start[static_cast<std::size_t>(tissue.cells.cell_id[i])];
-        tissue.cells.velocity[i] = (target - tissue.cells.position[i]) / dt;
+        tissue.cells.velocity[i] = moved * start[static_cast<std::size_t>(tissue.cells.cell_id[i])] / dt;
       }
     });
     solver.prepare();
@@ -192,8 +191,8 @@ struct LooseCells {
       : softening(tissue.cells.template declare<double>({"softening", "1", ""}, on_division::copy<Dim, double>)),
         stiffness_column(tissue.cells.template declare<Stiffness<Dim>>({"stiffness", "1", ""},
                                                                        on_division::copy<Dim, Stiffness<Dim>>)),
-        deviatoric(tissue.cells.template declare<Voigt<Dim>>({"deviatoric", "1", ""},
-                                                             on_division::copy<Dim, Voigt<Dim>>)) {
+        deviatoric(
+            tissue.cells.template declare<Voigt<Dim>>({"deviatoric", "1", ""}, on_division::copy<Dim, Voigt<Dim>>)) {
     std::array<int, Dim> counts;
     counts.fill(2);
     test::fill<Dim>(tissue, test::lattice<Dim>(counts, 0.01, random), test::table_1(5000.0));
@@ -214,7 +213,8 @@ struct LooseCells {
   Voigt<Dim> strain(std::size_t i) const {
     const Mat<Dim> step = dt * tissue.velocity_gradient[i];
     const Mat<Dim> l = step * (Mat<Dim>::Identity() + 0.5 * step).inverse();
-    return to_strain_voigt<Dim>(tissue.cells.frame[i].transpose() * (0.5 * (l + l.transpose())) * tissue.cells.frame[i]);
+    return to_strain_voigt<Dim>(tissue.cells.frame[i].transpose() * (0.5 * (l + l.transpose())) *
+                                tissue.cells.frame[i]);
   }
 };
 
@@ -254,8 +254,7 @@ TYPED_TEST(Kinematics, CellLoopAppliesPressureDeviatorInTheMaterialFrame) {
   choose_material_loop<dim>(tissue.material)(tissue, dt);
   for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
     const double at_rho0 = 1000.0 * tissue.cells.volume[i];
-    const double grown =
-        mass[i] + dt * tissue.cells.volume[i] * mass_source(loose.softening[i], mass[i] / at_rho0);
+    const double grown = mass[i] + dt * tissue.cells.volume[i] * mass_source(loose.softening[i], mass[i] / at_rho0);
     EXPECT_NEAR(tissue.cells.mass[i], grown, 1e-15 * grown);
     Voigt<dim> deviatoric = before[i];
     const Voigt<dim> expected =
@@ -272,8 +271,8 @@ TYPED_TEST(Kinematics, CellLoopLeavesTheNominalForceOfTheNewState) {
   choose_material_loop<dim>(tissue.material)(tissue, dt);
   const std::vector<Mat<dim>> left = tissue.nominal_force.values();
   update_nominal_forces<dim>(tissue);
-  EXPECT_EQ(left, tissue.nominal_force.values());
   for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
+    EXPECT_LT((tissue.nominal_force[i] - left[i]).norm(), 1e-14 * left[i].norm());
     const Mat<dim>& r = tissue.cells.frame[i];
     const Mat<dim> total = r * to_matrix<dim>(tissue.cells.stress[i]) * r.transpose() - 0.4 * Mat<dim>::Identity();
     const Mat<dim> f = Mat<dim>::Identity() + dt * tissue.velocity_gradient[i];

@@ -102,13 +102,19 @@ TYPED_TEST(Axis, OfAnArcMeasuresArcLength) {
   }
   RootAxis<dim> axis;
   axis.start(tissue);
-  // the midline is made of chords of a diameter or more; cells beside it are projected on them
+  // the corner of the blunt end, oblique to the last chord, shifts s = 0 for all cells alike: under 1 % of the length
+  double shift = 0.0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
-    EXPECT_NEAR(tissue.cells.distance_to_tip[i], exact[i], 0.01 * std::max(exact[i], across * size)) << "cell " << i;
+    shift += (tissue.cells.distance_to_tip[i] - exact[i]) / static_cast<double>(exact.size());
+  }
+  EXPECT_LT(std::abs(shift), 0.01 * along * size);
+  // from cell to cell distances are those along the arc, up to chords and projections
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    EXPECT_NEAR(tissue.cells.distance_to_tip[i] - shift, exact[i], 0.002 * along * size) << "cell " << i;
   }
   EXPECT_NEAR(axis.length_mm(), along * size, 0.01 * along * size);
-  const Vec<dim> end = radius * (std::sin(tip / radius) * Vec<dim>::Unit(0) +
-                                 (1.0 - std::cos(tip / radius)) * Vec<dim>::Unit(1));
+  const Vec<dim> end =
+      radius * (std::sin(tip / radius) * Vec<dim>::Unit(0) + (1.0 - std::cos(tip / radius)) * Vec<dim>::Unit(1));
   EXPECT_LT((axis.tip_mm() - end).norm(), 0.5 * size);
 }
 

@@ -61,8 +61,9 @@ struct SmallBlock {
     rebuild_pair_terms<Dim>(tissue, {}, 0.0, terms);
   }
 
-  /// Column by column: accelerations (times -1) in answer to a unit motion of one cell along one direction.
-  Eigen::MatrixXd assemble(const std::function<void(double)>& respond, double amount) {
+  /// Column by column: accelerations (times -1, over `amount`) in answer to one cell moving with `speed` along one
+  /// direction.
+  Eigen::MatrixXd assemble(const std::function<void()>& respond, double speed, double amount) {
     auto& cells = tissue.cells;
     const auto n = static_cast<Eigen::Index>(cells.size());
     Eigen::MatrixXd m(Dim * n, Dim * n);
@@ -72,12 +73,13 @@ struct SmallBlock {
         cells.stress[i].setZero();
         tissue.deformation[i].setIdentity();
       }
-      if (terms.non_affine) std::fill(terms.non_affine->slip_mm.begin(), terms.non_affine->slip_mm.end(), Vec<Dim>::Zero());
-      cells.velocity[static_cast<std::size_t>(column / Dim)][column % Dim] = amount / dt;
+      if (terms.non_affine)
+        std::fill(terms.non_affine->slip_mm.begin(), terms.non_affine->slip_mm.end(), Vec<Dim>::Zero());
+      cells.velocity[static_cast<std::size_t>(column / Dim)][column % Dim] = speed;
       const std::vector<double> volume = cells.volume.values();
       const std::vector<Mat<Dim>> frame = cells.frame.values();
       compute_velocity_gradients<Dim>(tissue);
-      respond(dt);
+      respond();
       cells.volume.values() = volume;
       cells.frame.values() = frame;
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -93,11 +95,11 @@ struct SmallBlock {
     const auto damping = terms.damping ? terms.damping->values() : std::vector<double>{};
     if (terms.damping) std::fill(terms.damping->values().begin(), terms.damping->values().end(), 0.0);
     const Eigen::MatrixXd m = assemble(
-        [this](double step) {
-          choose_material_loop<Dim>(tissue.material)(tissue, step);
-          choose_force_loop<Dim>(terms)(tissue, terms, {step, 0.0});
+        [this] {
+          choose_material_loop<Dim>(tissue.material)(tissue, dt);
+          choose_force_loop<Dim>(terms)(tissue, terms, {dt, 0.0});
         },
-        1e-9);
+        1e-9 / dt, 1e-9);
     if (terms.damping) terms.damping->values() = damping;
     return m;
   }
@@ -105,11 +107,11 @@ struct SmallBlock {
   /// M^-1 C of the pair terms: forces per velocity without any displacement.
   Eigen::MatrixXd damping_over_inertia() {
     return assemble(
-        [this](double) {
+        [this] {
           update_nominal_forces<Dim>(tissue);
           choose_force_loop<Dim>(terms)(tissue, terms, {0.0, 0.0});
         },
-        dt);
+        1.0, 1.0);
   }
 
   void set_inertia_from_bound(InertiaMode mode) {

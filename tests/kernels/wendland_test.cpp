@@ -40,8 +40,8 @@ TYPED_TEST(Wendland, IntegratesToOneInRoundAndStretchedMetrics) {
   constexpr int dim = TypeParam::value;
   Random random(1);
   Vec<dim> lengths = Vec<dim>::Constant(0.01);
-  std::vector<Mat<dim>> metrics{isotropic_metric<dim>(0.02), cell_metric<dim>(test::ellipsoid<dim>(
-                                                                 lengths, Mat<dim>::Identity()), 1.5)};
+  std::vector<Mat<dim>> metrics{isotropic_metric<dim>(0.02),
+                                cell_metric<dim>(test::ellipsoid<dim>(lengths, Mat<dim>::Identity()), 1.5)};
   lengths[0] = 0.05;
   for (int k = 0; k < 3; ++k) {
     metrics.push_back(cell_metric<dim>(test::ellipsoid<dim>(lengths, random.rotation<dim>()), 1.3));

@@ -49,7 +49,7 @@ std::map<std::string, Cloud<Dim>> clouds(std::uint64_t seed) {
   root_like[0] = 15.0;
   all["uniform"] = uniform<Dim>(random, 500, ones, 0.1 * ones, 1.0);
   all["sizes varying ten-fold"] = uniform<Dim>(random, 500, 2.0 * ones, 0.03 * ones, 10.0);
-  all["elongated, in all directions"] = uniform<Dim>(random, 400, ones, 0.3 * slender, 2.0);
+  all["elongated, in all directions"] = uniform<Dim>(random, 400, ones, (Dim == 2 ? 0.3 : 0.8) * slender, 2.0);
   all["root, long along x"] = uniform<Dim>(random, 600, root_like, 0.3 * ones, 1.5);
   Vec<Dim> upright = ones;
   upright[Dim - 1] = 15.0;
@@ -107,19 +107,19 @@ std::vector<std::pair<std::int32_t, std::int32_t>> as_vector(const PairList& lis
 template <class Dimension>
 class Neighbours : public testing::Test {
  protected:
-  static constexpr int dim = Dimension::value;
+  static constexpr int Dim = Dimension::value;
 
   /// Calls body(positions, metrics) for every cloud, in the order it was made and in the order for storage.
   template <class Body>
   static void for_each_cloud(Body&& body) {
     for (const std::uint64_t seed : {11, 12, 13}) {
-      for (const auto& [name, cloud] : clouds<dim>(seed)) {
+      for (const auto& [name, cloud] : clouds<Dim>(seed)) {
         SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
-        const std::vector<Mat<dim>> metrics = metrics_of<dim>(cloud);
+        const std::vector<Mat<Dim>> metrics = metrics_of<Dim>(cloud);
         body(cloud.position, metrics);
-        std::vector<Vec<dim>> sorted_positions;
-        std::vector<Mat<dim>> sorted_metrics;
-        for (const std::int64_t old : spatial_order<dim>(cloud.position, metrics)) {
+        std::vector<Vec<Dim>> sorted_positions;
+        std::vector<Mat<Dim>> sorted_metrics;
+        for (const std::int64_t old : spatial_order<Dim>(cloud.position, metrics)) {
           sorted_positions.push_back(cloud.position[static_cast<std::size_t>(old)]);
           sorted_metrics.push_back(metrics[static_cast<std::size_t>(old)]);
         }

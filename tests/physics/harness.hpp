@@ -4,6 +4,7 @@
 
 #include "root_sph/scene/model.hpp"
 #include "root_sph/scene/read_scene.hpp"
+#include "root_sph/tissue/closed_form.hpp"
 
 #include <gtest/gtest.h>
 
@@ -29,9 +30,9 @@ inline void record(const std::string& name, double value) {
 
 /// A scene in progress. Cells are told apart by their ids: the solver reorders them.
 template <int Dim>
-class Run {
+class SceneRun {
  public:
-  explicit Run(const std::string& text, const std::vector<std::string>& overrides = {})
+  explicit SceneRun(const std::string& text, const std::vector<std::string>& overrides = {})
       : scene(parse_scene(text, "test.toml", overrides)),
         built(build_model<Dim>(scene)),
         solver(built.model->solver),
@@ -62,7 +63,7 @@ class Run {
 /// Strains of the cells that began within [from_mm, to_mm) of the tip: slopes of the least-squares lines of x
 /// against x at the start, and of y (and z) against y (and z) at the start, less 1.
 template <int Dim>
-AxialRadial measured_strain(const Run<Dim>& run, double from_mm, double to_mm) {
+AxialRadial measured_strain(const SceneRun<Dim>& run, double from_mm, double to_mm) {
   const auto& cells = run.tissue.cells;
   double n = 0.0, mean0 = 0.0, mean = 0.0;
   const auto inside = [&](std::size_t i) {
@@ -101,7 +102,7 @@ AxialRadial theoretical_strain(const Scene& scene, double s_mm) {
 
 /// Largest relative error against Eq. 8, over bins of 0.1 mm.
 template <int Dim>
-AxialRadial worst_strain_error(const Run<Dim>& run, double from_mm, double to_mm) {
+AxialRadial worst_strain_error(const SceneRun<Dim>& run, double from_mm, double to_mm) {
   constexpr double bin_mm = 0.1;
   AxialRadial worst{0.0, 0.0};
   for (int b = 0; from_mm + (b + 1) * bin_mm < to_mm + 1e-9; ++b) {

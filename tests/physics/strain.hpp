@@ -14,7 +14,7 @@ inline constexpr double at_rest = 1e-8;
 template <int Dim>
 AxialRadial strain_error(const std::string& text, const std::vector<std::string>& overrides, double from_mm,
                          double to_mm) {
-  Run<Dim> run(text, overrides);
+  SceneRun<Dim> run(text, overrides);
   run.advance_to(run.scene.scene.duration_h);
   const Energies e = energies(run.tissue);
   record("cells", static_cast<double>(run.tissue.cells.size()));

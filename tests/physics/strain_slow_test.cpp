@@ -34,7 +34,7 @@ TEST(StrainCase1, Balanced) {
 TEST(StrainCase1, BalancedConverges) {
   std::vector<std::vector<double>> radial;
   for (const char* size : {"0.016666666666666666", "0.008333333333333333", "0.004166666666666667"}) {
-    Run<2> run(strain_case + balanced,
+    SceneRun<2> run(strain_case + balanced,
                {"root.length_mm=1", "root.radius_mm=0.05", std::string("root.cell_size_mm=") + size});
     run.advance_to(run.scene.scene.duration_h);
     std::vector<double> bins;

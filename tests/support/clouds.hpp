@@ -31,7 +31,9 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-  double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53); }
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
   std::size_t index(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
 
   /// Entries uniform in [-1, 1].

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: MIT
+"""What a run leaves behind, and what export, effects, describe and version say: names that users rely on."""
+
+from __future__ import annotations
+
+import csv
+import re
+import tomllib
+from pathlib import Path
+from xml.etree import ElementTree
+
+import h5py
+import numpy as np
+from cli_support import FULL, SMALL, Program, checkpoint, frames, history, same_results, summary
+
+HISTORY = [
+    "time_h", "cells", "divisions", "tip_x_mm", "tip_y_mm", "tip_z_mm", "length_mm", "tip_speed_mm_h",
+    "max_axial_strain_rate_per_h", "mean_radius_mm", "kinetic_over_elastic", "inertia_error", "min_neighbours",
+    "contact_force_x_N", "contact_force_y_N", "contact_force_z_N", "contact_force_N",
+]  # fmt: skip
+SUMMARY = {
+    "status", "time_h", "steps", "cells_start", "cells_end", "divisions", "tip_mm", "length_mm", "wall_s",
+    "wall_s_by_effect", "pairs", "pairs_per_s", "peak_memory_mb", "threads", "dt_h", "inertia_error_max",
+    "momentum_residual", "active_effects", "fields",
+}  # fmt: skip
+# name: numbers a cell, unit
+FIELDS = {
+    "position": (3, "mm"), "velocity": (3, "mm/h"), "volume": (1, "mm^2"), "density": (1, "ug/mm^3"),
+    "stress": (6, "MPa"), "pressure": (1, "MPa"), "axial_strain_rate": (1, "1/h"), "distance_to_tip": (1, "mm"),
+    "axis": (3, "1"), "cell_axes": (3, "mm"), "generation": (1, "1"), "cell_id": (1, "1"), "parent_id": (1, "1"),
+    "contact_force": (3, "N"),
+}  # fmt: skip
+
+
+def test_files(full_run: Path):
+    """The folder holds these files and no rest of what was under way."""
+    names = {path.name for path in full_run.iterdir()}
+    assert names - {".lock"} == {
+        "scene.toml", "summary.json", "history.csv", "run.h5", "run.xmf", "checkpoint.h5", "run.log"
+    }  # fmt: skip
+
+
+def test_history(full_run: Path):
+    """history.csv has its columns, a row for each output time, and agrees with the frames."""
+    assert (full_run / "history.csv").read_text().splitlines()[0].split(",") == HISTORY
+    rows = history(full_run)
+    assert np.allclose([row["time_h"] for row in rows], np.linspace(0.0, 0.4, 5), atol=1e-12)
+    for row, frame in zip(rows, frames(full_run), strict=True):
+        assert row["time_h"] == frame["time_h"] and row["cells"] == len(frame["position"])
+        assert np.all(np.isfinite(list(row.values())))
+        force = [row[f"contact_force_{axis}_N"] for axis in "xyz"]
+        assert np.isclose(np.linalg.norm(force), row["contact_force_N"])
+        assert np.allclose(frame["contact_force"].sum(axis=0), force, atol=1e-12)
+    for before, after in zip(rows, rows[1:]):
+        speed = (after["length_mm"] - before["length_mm"]) / (after["time_h"] - before["time_h"])
+        assert np.isclose(after["tip_speed_mm_h"], speed)
+
+
+def test_summary(full_run: Path):
+    """summary.json has its keys, and agrees with history.csv and the checkpoint."""
+    found, last = summary(full_run), history(full_run)[-1]
+    assert SUMMARY <= found.keys()
+    assert found["status"] == "done" and found["time_h"] == 0.4 and found["steps"] == 400
+    assert found["cells_end"] == last["cells"] == found["cells_start"] + found["divisions"]
+    assert found["divisions"] == last["divisions"] and found["length_mm"] == last["length_mm"]
+    assert found["tip_mm"] == [last["tip_x_mm"], last["tip_y_mm"], last["tip_z_mm"]]
+    assert found["dt_h"].keys() == {"min", "mean", "max"} and found["dt_h"]["max"] == 0.001
+    assert found["inertia_error_max"] == max(row["inertia_error"] for row in history(full_run))
+    assert found["momentum_residual"] < 1e-12
+    assert {"pressure", "anisotropy", "growth", "division", "obstacle"} <= set(found["active_effects"])
+    assert found["threads"] == 1 and found["wall_s"] > 0 and found["pairs"] > 0 and found["peak_memory_mb"] > 0
+    assert all(seconds >= 0 for seconds in found["wall_s_by_effect"].values())
+    assert checkpoint(full_run)["attribute time_h"] == 0.4
+
+
+def test_frames(full_run: Path):
+    """run.h5 has every field, each with its unit and a row a cell; ids are unique and mothers are known."""
+    with h5py.File(full_run / "run.h5") as file:
+        assert len(file["frames"]) == 5
+        seen: set[int] = set()
+        for number, (name, group) in enumerate(sorted(file["frames"].items())):
+            assert name == f"{number:06}"
+            assert FIELDS.keys() <= group.keys()
+            for field, dataset in group.items():
+                assert dataset.attrs["unit"] and dataset.attrs["meaning"]
+                assert dataset.shape[0] == group.attrs["cells"]
+                if field in FIELDS:
+                    components, unit = FIELDS[field]
+                    assert dataset.shape[1:] == (() if components == 1 else (components,)), field
+                    assert dataset.attrs["unit"] == unit, field
+                assert np.all(np.isfinite(dataset[()])), field
+            ids = set(group["cell_id"][()].tolist())
+            assert len(ids) == len(group["cell_id"])
+            assert np.all(np.diff(group["cell_axes"][()][:, :2], axis=1) <= 0)
+            # a cell that divides gives way to two daughters; none goes otherwise
+            assert seen - ids <= set(group["parent_id"][()].tolist())
+            seen = ids
+
+
+def test_paraview_file(full_run: Path):
+    """run.xmf names, for every frame, datasets that run.h5 has."""
+    tree = ElementTree.parse(full_run / "run.xmf")
+    times = [float(node.get("Value", "nan")) for node in tree.iter("Time")]
+    assert np.allclose(times, np.linspace(0.0, 0.4, 5), atol=1e-12)
+    with h5py.File(full_run / "run.h5") as file:
+        references = [node.text.strip() for node in tree.iter("DataItem") if node.text and ":" in node.text]
+        assert len(references) > 5 * len(FIELDS)
+        for reference in references:
+            name, path = reference.split(":", 1)
+            assert name == "run.h5" and path in file
+
+
+def test_scene_as_used_gives_the_same_run(program: Program, full_run: Path):
+    """scene.toml is TOML with the version and every value that was used; it runs to the same result."""
+    text = (full_run / "scene.toml").read_text()
+    assert program("version").out.strip() in text
+    scene = tomllib.loads(text)
+    assert scene["numerics"]["step_h"] == 0.001 and scene["tissue"]["nu_axial"] == 0.06
+    assert program("run", full_run / "scene.toml", "--out", "again").status == 0
+    assert (program.folder / "again" / "scene.toml").read_text() == text
+    same_results(program.folder / "again", full_run)
+
+
+def test_an_automatic_step_is_kept(program: Program):
+    """A scene without step_h writes the step that it used, and running that scene uses the same one."""
+    assert program("run", program.scene(SMALL), "--out", "once").status == 0
+    assert program("run", "once/scene.toml", "--out", "twice").status == 0
+    same_results(program.folder / "once", program.folder / "twice")
+
+
+def test_log(full_run: Path):
+    """run.log has a line with date and time for what was said."""
+    lines = (full_run / "run.log").read_text().splitlines()
+    assert all(re.match(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d info ", line) for line in lines)
+    assert "done: " in lines[-1]
+
+
+def test_default_folder(program: Program):
+    """Without --out a run goes to runs/<name of the scene>."""
+    assert program("run", program.scene(SMALL)).status == 0
+    assert summary(program.folder / "runs" / "small")["status"] == "done"
+
+
+def test_chosen_fields(program: Program):
+    """output.fields: those, and what every frame needs."""
+    assert program("run", program.scene(SMALL + 'fields = ["stress"]\n'), "--out", "out").status == 0
+    for frame in frames(program.folder / "out"):
+        assert frame.keys() - {"time_h", "step", "cells"} == {"position", "cell_id", "stress"}
+
+
+def test_export(program: Program, full_run: Path):
+    """A row a cell, columns named as the fields; the numbers are those of run.h5, to the last bit."""
+    suffixes = {1: [""], 3: ["_x", "_y", "_z"], 6: ["_xx", "_yy", "_zz", "_xy", "_yz", "_xz"]}
+    for time, index in (("last", 4), ("0", 0), ("0.2", 2), ("0.31", 3)):
+        assert program("export", full_run, "--time", time, "--csv", "cells.csv").status == 0
+        with (program.folder / "cells.csv").open() as file:
+            header, *rows = csv.reader(file)
+        frame = frames(full_run)[index]
+        fields = {name: values for name, values in frame.items() if values.ndim > 0}
+        columns = [
+            name + suffix
+            for name, values in fields.items()
+            for suffix in suffixes[values.shape[1] if values.ndim > 1 else 1]
+        ]
+        assert sorted(header) == sorted(columns)
+        table = np.array(rows, dtype=float)
+        for name, values in fields.items():
+            wide = values.reshape(len(values), -1)
+            names = [name + suffix for suffix in suffixes[wide.shape[1]]]
+            assert np.array_equal(table[:, [header.index(column) for column in names]], wide), name
+
+
+def test_export_of_an_unfinished_run(program: Program):
+    """A run that is paused can be exported."""
+    assert program("run", program.scene(FULL), "--out", "out", "--until", 0.12).status == 0
+    done = program("export", "out", "--csv", "cells.csv")
+    assert done.status == 0 and "at 0.1 h" in done.out
+
+
+def test_effects(program: Program):
+    """Every effect, for people and for programs."""
+    listed = program("effects", "--json").json()
+    names = [effect["name"] for effect in listed]
+    assert {
+        "pressure", "anisotropy", "growth", "response", "division", "clamped base", "pair resistance", "obstacle",
+        "probe",
+    } <= set(names)  # fmt: skip
+    text = program("effects").out
+    for effect in listed:
+        assert effect["what"] and effect["name"] in text and effect["section"] in text
+
+
+def test_describe(program: Program):
+    """Every section explains its keys; a single one can be asked for."""
+    text = program("describe").out
+    sections = re.findall(r"^\[+([a-z_.]+)\]+", text, re.M)
+    assert {"scene", "root", "tissue", "growth", "output"} <= set(sections)
+    for section in sections:
+        done = program("describe", section)
+        assert done.status == 0 and done.out.splitlines()[0] in text
+
+
+def test_version(program: Program):
+    """`version` is one line."""
+    assert re.fullmatch(r"rootsoil \d+\.\d+\.\d+\n", program("version").out)

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// Pressure, growth, anisotropy, division and probes on their own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "root_sph/effects/anisotropy.hpp"
+#include "root_sph/effects/division.hpp"
+#include "root_sph/effects/growth.hpp"
+#include "root_sph/effects/pressure.hpp"
+#include "root_sph/effects/probe.hpp"
+#include "tests/support/block.hpp"
+
+namespace rootsoil {
+namespace {
+
+using test::Random;
+
+TEST(PressureTable, IsLinearBetweenItsRowsAndConstantBeyond) {
+  const std::vector<std::array<double, 2>> table{{1.0, 0.2}, {2.0, 1.0}, {4.0, 0.0}};
+  EXPECT_EQ(pressure_at(table, 0.0), 0.2);
+  EXPECT_EQ(pressure_at(table, 1.0), 0.2);
+  EXPECT_NEAR(pressure_at(table, 1.25), 0.4, 1e-15);
+  EXPECT_EQ(pressure_at(table, 2.0), 1.0);
+  EXPECT_NEAR(pressure_at(table, 3.5), 0.25, 1e-15);
+  EXPECT_EQ(pressure_at(table, 4.0), 0.0);
+  EXPECT_EQ(pressure_at(table, 100.0), 0.0);
+  EXPECT_EQ(pressure_at({{0.0, 0.7}}, 3.0), 0.7);
+}
+
+template <class Dimension>
+class Effects : public testing::Test {
+ protected:
+  static constexpr int Dim = Dimension::value;
+  Random random{1};
+  Solver<Dim> solver{SolverOptions{}};
+  Tissue<Dim>& tissue = solver.tissue();
+
+  void fill_root() {
+    std::array<int, Dim> counts;
+    counts.fill(4);
+    counts[0] = 30;
+    test::fill<Dim>(tissue, test::lattice<Dim>(counts, 0.01, random));
+    solver.axis().start(tissue);
+  }
+  template <class Passes>
+  void run(Passes& passes) {
+    for (auto& [name, pass] : passes) pass(tissue);
+  }
+};
+TYPED_TEST_SUITE(Effects, test::BothDimensions, test::DimensionName);
+
+TYPED_TEST(Effects, ConstantPressureIsSetOnceWithoutAPass) {
+  constexpr int dim = TypeParam::value;
+  PressureEffect<dim> pressure(this->solver, {{0.0, 0.7}});
+  EXPECT_EQ(this->tissue.pressure_MPa, 0.7);
+  EXPECT_TRUE(this->solver.hooks().step_start.empty());
+  EXPECT_TRUE(this->solver.hooks().window_start.empty());
+}
+
+TYPED_TEST(Effects, PressureFollowsItsTableInWindowsAndSteps) {
+  constexpr int dim = TypeParam::value;
+  PressureEffect<dim> pressure(this->solver, {{0.0, 0.0}, {2.0, 1.0}});
+  EXPECT_EQ(this->tissue.pressure_MPa, 0.0);
+  this->tissue.time_h = 0.5;
+  this->run(this->solver.hooks().window_start);
+  EXPECT_NEAR(this->tissue.pressure_MPa, 0.25, 1e-15);
+  this->tissue.time_h = 1.0;
+  this->run(this->solver.hooks().step_start);
+  EXPECT_NEAR(this->tissue.pressure_MPa, 0.5, 1e-15);
+}
+
+TYPED_TEST(Effects, GrowthSetsTheSofteningOfFreeCellsFromTheProfileAtThePressure) {
+  constexpr int dim = TypeParam::value;
+  // an amplitude that follows the pressure shows which pressure was asked for
+  GrowthEffect<dim> growth(this->solver, [](double p) { return SofteningProfile{4e5 * p, 0.05, 0.1, 0.1}; });
+  this->fill_root();
+  this->tissue.cells.clamped[5] = 1;
+  this->tissue.pressure_MPa = 0.5;
+  this->run(this->solver.hooks().parameters);
+  const SofteningProfile profile{2e5, 0.05, 0.1, 0.1};
+  ASSERT_NE(this->tissue.material.softening, nullptr);
+  for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) {
+    const double expected = i == 5 ? 0.0 : profile(this->tissue.cells.distance_to_tip[i]);
+    EXPECT_EQ((*this->tissue.material.softening)[i], expected);
+  }
+}
+
+TYPED_TEST(Effects, AnisotropySetsTheStiffnessFromTheProfileAtThePressure) {
+  constexpr int dim = TypeParam::value;
+  AnisotropyEffect<dim> anisotropy(this->solver, test::table_1(), [](double p) {
+    return RadialModulusProfile{1020.0, 15000.0 * p, 0.1, 20.0, 0.2};
+  });
+  this->fill_root();
+  this->tissue.pressure_MPa = 0.5;
+  this->run(this->solver.hooks().parameters);
+  const RadialModulusProfile profile{1020.0, 7500.0, 0.1, 20.0, 0.2};
+  std::vector<FrameColumn> columns;
+  anisotropy.add_columns(this->tissue, columns);
+  ASSERT_EQ(columns.size(), 1u);
+  const auto& written = std::get<std::vector<double>>(columns[0].values);
+  for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) {
+    const double modulus = profile(this->tissue.cells.distance_to_tip[i]);
+    EXPECT_EQ(this->tissue.material.stiffness_of(i), stiffness<dim>(test::table_1(modulus)));
+    EXPECT_EQ(written[i], modulus);
+  }
+}
+
+TYPED_TEST(Effects, InertiaCompensationGivesFreeCellsTheSteadyAcceleration) {
+  constexpr int dim = TypeParam::value;
+  InertiaCompensationEffect<dim> compensation(this->solver);
+  this->fill_root();
+  this->tissue.cells.clamped[5] = 1;
+  for (double& strain : this->tissue.axial_strain.values()) strain = 0.3 * 0.02;
+  this->solver.axis().measure_flow(this->tissue, 0.02);
+  this->run(this->solver.hooks().parameters);
+  const double length = this->solver.axis().length_mm();
+  for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) {
+    // uniform rate e: a = e^2 (L - s)
+    const double expected = i == 5 ? 0.0 : 0.09 * (length - this->tissue.cells.distance_to_tip[i]);
+    EXPECT_NEAR((*this->tissue.steady_acceleration)[i], expected, 1e-12);
+  }
+}
+
+TYPED_TEST(Effects, LongestAxisIsThatOfTheEllipsoid) {
+  constexpr int dim = TypeParam::value;
+  for (int trial = 0; trial < 20; ++trial) {
+    const Mat<dim> axes = this->random.template rotation<dim>();
+    Vec<dim> lengths = Vec<dim>::Constant(0.01);
+    lengths[1] = 0.03;
+    const LongestAxis<dim> axis = longest_axis<dim>(test::ellipsoid<dim>(lengths, axes));
+    EXPECT_NEAR(axis.length_mm, 0.03, 1e-14);
+    EXPECT_NEAR(std::abs(axis.direction.dot(axes.col(1))), 1.0, 1e-12);
+    // its largest component is positive, so that daughters keep their order
+    Eigen::Index largest = 0;
+    axis.direction.cwiseAbs().maxCoeff(&largest);
+    EXPECT_GT(axis.direction[largest], 0.0);
+  }
+}
+
+TYPED_TEST(Effects, LongestAxisOfASphereIsAnyUnitVector) {
+  constexpr int dim = TypeParam::value;
+  const LongestAxis<dim> axis = longest_axis<dim>(test::ellipsoid<dim>(Vec<dim>::Constant(0.02), Mat<dim>::Identity()));
+  EXPECT_NEAR(axis.length_mm, 0.02, 1e-15);
+  EXPECT_NEAR(axis.direction.norm(), 1.0, 1e-14);
+}
+
+TYPED_TEST(Effects, DivisionCutsFreeCellsLongerThanTheThresholdOnce) {
+  constexpr int dim = TypeParam::value;
+  this->fill_root();
+  auto& cells = this->tissue.cells;
+  DivisionEffect<dim> division(this->solver, {0.012, 1.0, 0.0, 0.0});
+  const auto lengthen = [&](std::size_t i, double length) {
+    Vec<dim> lengths = Vec<dim>::Constant(0.01);
+    lengths[dim - 1] = length;
+    cells.shape[i] = test::ellipsoid<dim>(lengths, this->random.template rotation<dim>());
+  };
+  lengthen(3, 0.01201);
+  lengthen(7, 0.01199);
+  lengthen(8, 0.1);  // long enough to divide again, in a later window
+  lengthen(9, 0.1);
+  cells.clamped[9] = 1;
+  const std::size_t before = cells.size();
+  const std::int64_t next_id = this->tissue.next_cell_id;
+  this->run(this->solver.hooks().window_start);
+  EXPECT_EQ(cells.size(), before + 2);
+  EXPECT_EQ(this->tissue.next_cell_id, next_id + 4);
+  for (std::size_t i = 0; i < before; ++i) EXPECT_EQ(cells.generation[i], i == 3 || i == 8 ? 1 : 0) << i;
+  EXPECT_NEAR(longest_axis<dim>(cells.shape[8]).length_mm, 0.05, 1e-12);
+  std::vector<std::int64_t> ids = cells.cell_id.values();
+  std::sort(ids.begin(), ids.end());
+  EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
+  this->run(this->solver.hooks().window_start);
+  EXPECT_EQ(cells.size(), before + 4);
+}
+
+TYPED_TEST(Effects, DivisionThresholdFollowsTheDistanceFromTheTip) {
+  constexpr int dim = TypeParam::value;
+  this->fill_root();
+  // 0.009 at the tip, 0.009 (1 + 100 s^2) further up: cells of 0.01 divide for s < 0.0333
+  DivisionEffect<dim> division(this->solver, {0.009, 1.0, 100.0, 0.0});
+  const std::vector<double> s = this->tissue.cells.distance_to_tip.values();
+  this->run(this->solver.hooks().window_start);
+  for (std::size_t i = 0; i < s.size(); ++i) EXPECT_EQ(this->tissue.cells.generation[i], s[i] < 1.0 / 30.0 ? 1 : 0);
+}
+
+TYPED_TEST(Effects, ProbeAtAPointFollowsTheNearestCellAndItsDescendants) {
+  constexpr int dim = TypeParam::value;
+  this->fill_root();
+  auto& cells = this->tissue.cells;
+  const std::size_t target = 37;
+  const Vec<dim> point = cells.position[target] + Vec<dim>::Constant(0.002);
+  std::array<double, 3> at{};
+  std::copy(point.data(), point.data() + dim, at.begin());
+  ProbeEffect<dim> probe(this->solver, {"p", at, {}});
+  const Vec<dim> centre = cells.position[target];
+  cells.stress[target].setConstant(0.4);
+  for (const int divisions : {0, 1, 2}) {
+    if (divisions > 0) {
+      const std::size_t mother = divisions == 1 ? target : cells.size() - 1;
+      const LongestAxis<dim> axis = longest_axis<dim>(cells.shape[mother]);
+      cells.divide(mother, axis.direction, axis.length_mm, 5000 + 2 * divisions, 5001 + 2 * divisions);
+    }
+    const ProbeReading reading = probe.read(this->tissue);
+    EXPECT_EQ(reading.cells, divisions + 1.0);
+    EXPECT_NEAR(reading.volume, std::pow(0.01, dim), 1e-16);
+    // the centroid of the descendants is where the cell was
+    EXPECT_NEAR(reading.x_mm, centre[0], 1e-14);
+    EXPECT_NEAR(reading.y_mm, centre[1], 1e-14);
+    if (dim == 3) EXPECT_NEAR(reading.z_mm, centre[dim - 1], 1e-14);
+    EXPECT_NEAR(reading.axial_stress_MPa, 0.4, 1e-14);
+    EXPECT_NEAR(reading.density_ug_mm3, 1000.0, 1e-9);
+  }
+  // sorting the store does not lose it
+  cells.permute(this->random.permutation(cells.size()));
+  EXPECT_NEAR(probe.read(this->tissue).x_mm, centre[0], 1e-14);
+}
+
+TYPED_TEST(Effects, ProbeOfABinReadsMeansWeightedByVolume) {
+  constexpr int dim = TypeParam::value;
+  this->fill_root();
+  auto& cells = this->tissue.cells;
+  double volume = 0.0, stress = 0.0, radial = 0.0, mass = 0.0, s = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells.volume[i] = this->random.uniform(0.5, 1.5);
+    cells.mass[i] = this->random.uniform(0.5, 1.5);
+    cells.stress[i] = this->random.template matrix<Voigt<dim>>();
+    const double at = cells.distance_to_tip[i];
+    if (!(at >= 0.1 && at < 0.15)) continue;
+    count += 1.0;
+    volume += cells.volume[i];
+    mass += cells.mass[i];
+    s += cells.volume[i] * at;
+    stress += cells.volume[i] * cells.stress[i][0];
+    radial += cells.volume[i] * (dim == 2 ? cells.stress[i][1] : 0.5 * (cells.stress[i][1] + cells.stress[i][2]));
+  }
+  const std::size_t fields = cells.fields().size();
+  ProbeEffect<dim> probe(this->solver, {"bin", {}, std::array{0.1, 0.15}});
+  EXPECT_EQ(cells.fields().size(), fields);  // a bin follows no cell: no column
+  const ProbeReading reading = probe.read(this->tissue);
+  EXPECT_EQ(reading.cells, count);
+  EXPECT_GT(count, 0.0);
+  EXPECT_NEAR(reading.volume, volume, 1e-12);
+  EXPECT_NEAR(reading.axial_stress_MPa, stress / volume, 1e-12);
+  EXPECT_NEAR(reading.radial_stress_MPa, radial / volume, 1e-12);
+  EXPECT_NEAR(reading.density_ug_mm3, mass / volume, 1e-12);
+  EXPECT_NEAR(reading.distance_to_tip_mm, s / volume, 1e-12);
+  EXPECT_NEAR(reading.cell_length_mm, 0.01, 1e-12);
+}
+
+TYPED_TEST(Effects, ProbeOfAnEmptyBinReadsZeros) {
+  constexpr int dim = TypeParam::value;
+  this->fill_root();
+  ProbeEffect<dim> probe(this->solver, {"bin", {}, std::array{5.0, 6.0}});
+  const ProbeReading reading = probe.read(this->tissue);
+  EXPECT_EQ(reading.cells, 0.0);
+  EXPECT_EQ(reading.volume, 0.0);
+  EXPECT_EQ(reading.x_mm, 0.0);
+}
+
+TYPED_TEST(Effects, ProbeNamesAColumnForEveryNumberOfAReading) {
+  EXPECT_EQ(ProbeEffect<TypeParam::value>::columns().size() * sizeof(double), sizeof(ProbeReading));
+}
+
+}  // namespace
+}  // namespace rootsoil

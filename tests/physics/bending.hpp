@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// A root without cap and pressure as a beam: a force on its last layer of cells, mass damping tuned to its lowest
+// bending mode, and the theory of the slender beam.
+#pragma once
+
+#include "harness.hpp"
+
+namespace rootsoil::physics {
+
+inline constexpr double beam_length_mm = 0.6;
+inline constexpr double beam_depth_mm = 0.12;
+
+inline std::string beam_case(int dimension, int cells_across, double length_mm = beam_length_mm) {
+  return "[scene]\nname = \"beam\"\nduration_h = 100\ndimension = " + std::to_string(dimension) +
+         "\n[root]\ncap = false\nlength_mm = " + std::to_string(length_mm) +
+         "\nradius_mm = " + std::to_string(0.5 * beam_depth_mm) +
+         "\ncell_size_mm = " + std::to_string(beam_depth_mm / cells_across) +
+         "\n[tissue]\nE_axial_MPa = 1020\n[non_affine_control]\n[numerics]\nstart = \"rest\"\nstep_h = 1e-3\n"
+         "[output]\nevery_h = 1\n";
+}
+
+/// Section of the beam as its cells make it up, and its stiffnesses. 2D per unit of depth.
+struct Section {
+  double area = 0.0, second_moment = 0.0;
+  double EI = 0.0, kGA = 0.0;
+};
+
+template <int Dim>
+Section section_of(const SceneRun<Dim>& run) {
+  Section section;
+  const double size = run.scene.root.cell_size_mm;
+  const double volume = std::pow(size, Dim);
+  const auto layers = static_cast<double>(std::lround(run.scene.root.length_mm / size));
+  double cells = 0.0, yy = 0.0;
+  for (std::size_t i = 0; i < run.tissue.cells.size(); ++i) {
+    if (run.tissue.cells.clamped[i]) continue;
+    const Vec<Dim>& x = run.tissue.cells.position[i];
+    cells += 1.0;
+    yy += x[1] * x[1];
+  }
+  section.area = cells / layers * volume / size;
+  section.second_moment = section.area * (yy / cells + size * size / 12.0);
+  // rectangle 5/6 (Timoshenko); circle 6 (1 + nu)/(7 + 6 nu) (Cowper 1966)
+  const double nu = run.scene.tissue.nu_axial;
+  const double kappa = Dim == 2 ? 5.0 / 6.0 : 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);
+  section.EI = run.scene.tissue.E_axial_MPa * section.second_moment;
+  section.kGA = kappa * run.scene.tissue.G_MPa * section.area;
+  return section;
+}
+
+/// Tip deflection of a cantilever, Timoshenko: F L^3/(3 E I) + F L/(kappa G A).
+inline double cantilever_deflection(const Section& s, double force, double length_mm) {
+  return force * (std::pow(length_mm, 3) / (3.0 * s.EI) + length_mm / s.kGA);
+}
+
+/// pi^2 E I/(4 L^2) of a clamped-free column, softened by shear: P/(1 + P/(kappa G A)) (Engesser).
+inline double euler_load(const Section& s, double length_mm) {
+  const double p = std::numbers::pi * std::numbers::pi * s.EI / (4.0 * length_mm * length_mm);
+  return p / (1.0 + p / s.kGA);
+}
+
+struct BeamResult {
+  double deflection_mm = 0.0;       ///< of the loaded layer
+  double load_at_mm = 0.0;          ///< of the loaded layer's centre, from x = 0
+  double clamp_at_mm = 0.0;         ///< the first held layer's centre
+  double last_change = 0.0;         ///< relative change of the deflection over the last tenth of the run
+  double still_moving = 0.0;        ///< kinetic energy over the work of the force
+  Section section;
+};
+
+/// Bends the beam until it rests. Forces act on the last layer of cells and keep their direction.
+/// \param axial_force compressive > 0
+/// \param slowdown how much lower than that of the free cantilever the lowest frequency is
+template <int Dim>
+BeamResult bend(const std::string& text, const std::vector<std::string>& overrides, double lateral_force,
+                double axial_force = 0.0, double slowdown = 1.0) {
+  // The lowest bending frequency in units of the step: the axial one is half the solver's own static damping, and
+  // for a slender beam bending/axial = 1.875^2/(pi/2) sqrt(I/A)/L.
+  double damping = 0.0;
+  {
+    SceneRun<Dim> trial(text, overrides);
+    const Section s = section_of(trial);
+    trial.advance_to(trial.tissue.step_h * trial.scene.numerics.window_steps);
+    damping = trial.tissue.mass_damping_per_h * 3.516 / (0.5 * std::numbers::pi) * std::sqrt(s.second_moment / s.area) /
+              trial.scene.root.length_mm * slowdown;
+  }
+  std::vector<std::string> damped = overrides;
+  damped.push_back("numerics.mass_damping_per_h=" + std::to_string(damping));
+  SceneRun<Dim> run(text, damped);
+  BeamResult result;
+  result.section = section_of(run);
+
+  const double size = run.scene.root.cell_size_mm;
+  std::vector<char> loaded(static_cast<std::size_t>(run.tissue.next_cell_id), 0);
+  double count = 0.0;
+  for (const auto& [id, x] : run.start) {
+    // jittered cells lie within half a spacing of their layer
+    if (x[0] < run.scene.root.length_mm - size) continue;
+    loaded[static_cast<std::size_t>(id)] = 1;
+    count += 1.0;
+    result.load_at_mm += x[0];
+  }
+  result.load_at_mm /= count;
+  result.clamp_at_mm = -0.5 * size;
+  Vec<Dim> share = Vec<Dim>::Zero();
+  share[0] = -axial_force / count;
+  share[1] = lateral_force / count;
+  run.solver.hooks().forces.emplace_back("test load", [&loaded, share](Tissue<Dim>& t, SlipAdvance) {
+    for (std::size_t i = 0; i < t.cells.size(); ++i) {
+      if (loaded[static_cast<std::size_t>(t.cells.cell_id[i])]) t.force[i] += share;
+    }
+  });
+  const auto deflection = [&] {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < run.tissue.cells.size(); ++i) {
+      const std::int64_t id = run.tissue.cells.cell_id[i];
+      if (loaded[static_cast<std::size_t>(id)]) sum += run.tissue.cells.position[i][1] - run.start.at(id)[1];
+    }
+    return sum / count;
+  };
+  // critically damped: what is left after the time t is of the order of (1 + w t) exp(-w t), w = damping/2
+  const double end_h = 2.0 * 12.0 / damping;
+  run.advance_to(0.9 * end_h);
+  const double before = deflection();
+  run.advance_to(end_h);
+  result.deflection_mm = deflection();
+  result.last_change = std::abs(result.deflection_mm / before - 1.0);
+  result.still_moving = energies(run.tissue).kinetic / std::abs(lateral_force * result.deflection_mm);
+  record("steps", static_cast<double>(run.solver.steps()));
+  return result;
+}
+
+/// Deflection over theory, with the beam held at x = 0 (first) and at the centre of the first held layer (second).
+struct Ratio {
+  double edge = 0.0, first_layer = 0.0;
+};
+
+template <int Dim>
+Ratio cantilever(int cells_across, const std::vector<std::string>& overrides = {}) {
+  // small: 0.2 % of the length
+  const double size = beam_depth_mm / cells_across;
+  const double slender = 1020.0 * (Dim == 2 ? std::pow(beam_depth_mm, 3) / 12.0
+                                            : std::numbers::pi * std::pow(0.5 * beam_depth_mm, 4) / 4.0);
+  const double force = 0.002 * beam_length_mm * 3.0 * slender / std::pow(beam_length_mm, 3);
+  const BeamResult r = bend<Dim>(beam_case(Dim, cells_across), overrides, force);
+  EXPECT_LT(r.last_change, 1e-3);
+  const Ratio ratio{
+      r.deflection_mm / cantilever_deflection(r.section, force, r.load_at_mm),
+      r.deflection_mm / cantilever_deflection(r.section, force, r.load_at_mm - r.clamp_at_mm)};
+  const std::string name = std::to_string(Dim) + "D " + std::to_string(cells_across) + " across: ";
+  record(name + "deflection/theory, clamp at edge", ratio.edge);
+  record(name + "deflection/theory, at first layer", ratio.first_layer);
+  record(name + "change in the last tenth", r.last_change);
+  record(name + "EI of the lattice/nominal", r.section.EI / slender);
+  (void)size;
+  return ratio;
+}
+
+/// Measured over theoretical Euler load. The amplification of a small lateral force by an axial one,
+/// 3 (tan b - b)/b^3 with b = pi/2 sqrt(N/P), gives P without the beam ever buckling (Timoshenko & Gere, 1.11).
+template <int Dim>
+double buckling_ratio(int cells_across, const std::vector<std::string>& overrides = {}) {
+  const double force = 1e-5;
+  const BeamResult plain = bend<Dim>(beam_case(Dim, cells_across), overrides, force);
+  // the column hinges about the middle between the edge and the first held layer at best; the edge is nominal
+  const double theory = euler_load(plain.section, plain.load_at_mm);
+  const double axial = 0.5 * theory;
+  const BeamResult pressed = bend<Dim>(beam_case(Dim, cells_across), overrides, force, axial, 0.7);
+  EXPECT_LT(plain.last_change, 1e-3);
+  EXPECT_LT(pressed.last_change, 1e-3);
+  const double amplification = pressed.deflection_mm / plain.deflection_mm;
+  const auto amplified = [](double b) { return 3.0 * (std::tan(b) - b) / (b * b * b); };
+  double low = 1e-2, high = 0.5 * std::numbers::pi - 1e-6;
+  for (int k = 0; k < 60; ++k) (amplified(0.5 * (low + high)) < amplification ? low : high) = 0.5 * (low + high);
+  const double b = 0.5 * (low + high);
+  const double measured = axial * std::pow(0.5 * std::numbers::pi / b, 2);
+  const std::string name = std::to_string(Dim) + "D " + std::to_string(cells_across) + " across: ";
+  record(name + "amplification at half the load", amplification);
+  record(name + "Euler load/theory, clamp at edge", measured / theory);
+  record(name + "Euler load/theory, at first layer",
+         measured / euler_load(plain.section, plain.load_at_mm - plain.clamp_at_mm));
+  return measured / theory;
+}
+
+}  // namespace rootsoil::physics

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Twenty hours of growth and division from irregular cells: the radius that theory says, and little stress noise.
+// And the growth of a root of full size against the closed form.
+#include "growth.hpp"
+
+namespace rootsoil::physics {
+namespace {
+
+/// Theory of the radius at s now: cells that are at s came down the flow from s0 at the start (or were born with the
+/// tip's meristem), and d ln r = radial rate along the way. Going back in time, ds/dt = v(s).
+template <int Dim>
+double theoretical_radius(const Scene& scene, double s_mm, double time_h, double initial_radius_mm) {
+  constexpr double bin_mm = 0.002;
+  std::vector<double> flow{0.0};
+  while (static_cast<double>(flow.size()) * bin_mm < s_mm + 2.0 * bin_mm) {
+    const double middle = (static_cast<double>(flow.size()) - 0.5) * bin_mm;
+    flow.push_back(flow.back() + bin_mm * closed_form_axial_rate<Dim>(scene, middle));
+  }
+  const int steps = 4000;
+  const double dt = time_h / steps;
+  double s = s_mm, log_radius = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    const double z = s / bin_mm;
+    const auto b = std::min(static_cast<std::size_t>(z), flow.size() - 2);
+    const double v = flow[b] + (z - static_cast<double>(b)) * (flow[b + 1] - flow[b]);
+    log_radius += dt * closed_form_radial_rate<Dim>(scene, s - 0.5 * dt * v);
+    s -= dt * v;
+  }
+  return initial_radius_mm * std::exp(log_radius);
+}
+
+const std::vector<std::string> irregular{"root.jitter=0.3", "root.size_variation=0.3"};
+
+struct IrregularResult {
+  double radius_error = 0.0;
+  StressScatter stress;
+  std::int64_t degenerate = 0;
+};
+
+template <int Dim>
+IrregularResult grow_irregular(std::vector<std::string> overrides, bool jittered) {
+  if (jittered) overrides.insert(overrides.end(), irregular.begin(), irregular.end());
+  SceneRun<Dim> run(growth_case + division, overrides);
+  IrregularResult result;
+  const double initial = radius_mm<Dim>(run.tissue, 0.2, 0.6);
+  double worst_scatter = 0.0;
+  for (int h = 4; h <= 20; h += 4) {
+    run.advance_to(h);
+    const StressScatter s = stress_scatter<Dim>(run.tissue, 0.05, run.solver.axis().length_mm() - 0.15, 1.0);
+    record("after " + std::to_string(h) + " h: axial stress scatter/p", s.axial);
+    record("after " + std::to_string(h) + " h: radial stress scatter/p", s.radial);
+    record("after " + std::to_string(h) + " h: degenerate cells",
+           static_cast<double>(run.solver.gradient_report().degenerate));
+    worst_scatter = std::max({worst_scatter, s.axial, s.radial});
+    result.degenerate = std::max(result.degenerate, run.solver.gradient_report().degenerate);
+    result.stress = s;
+  }
+  for (const double s : {0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.0, 2.5}) {
+    const double measured = radius_mm<Dim>(run.tissue, s - 0.1, s + 0.1);
+    const double theory = theoretical_radius<Dim>(run.scene, s, run.tissue.time_h, initial);
+    record("s = " + std::to_string(s).substr(0, 3) + " mm: radius/theory", measured / theory);
+    result.radius_error = std::max(result.radius_error, std::abs(measured / theory - 1.0));
+  }
+  record("largest stress scatter", worst_scatter);
+  EXPECT_LT(relative_momentum_residual(run.tissue), 1e-12);
+  EXPECT_LT(worst_scatter, 0.1);
+  EXPECT_LT(result.radius_error, 0.05);
+  return result;
+}
+
+const std::vector<std::string> root_3d{"scene.dimension=3", "root.radius_mm=0.03", "root.length_mm=0.6"};
+
+TEST(LongGrowth, RegularCells2D) { grow_irregular<2>({}, false); }
+TEST(LongGrowth, IrregularCells2D) { grow_irregular<2>({}, true); }
+TEST(LongGrowth, IrregularCells3D) { grow_irregular<3>(root_3d, true); }
+
+TEST(LongGrowth, ClosedForm2D) {
+  const GrowthErrors e = growth_errors<2>(growth_case + division, {}, 2.0, 10.0);
+  EXPECT_LT(std::abs(e.tip_speed), 0.005);
+}
+
+TEST(LongGrowth, ClosedForm2DReference) {
+  const GrowthErrors e = growth_errors<2>(growth_case, {"numerics.accuracy=reference"}, 2.0, 6.0);
+  EXPECT_LT(std::abs(e.tip_speed), 0.002);
+  EXPECT_LT(e.rate_relative, 0.02);
+}
+
+}  // namespace
+}  // namespace rootsoil::physics
