@@ -4,36 +4,52 @@
 namespace rootsoil {
 namespace {
 
+// Both loops go row by row: what belongs to cell i stays in registers while its partners j > i pass by.
+
 template <int Dim, bool NonAffine, bool Viscous>
 void add_forces(Tissue<Dim>& tissue, PairTerms<Dim>& terms, SlipAdvance advance) {
   const Pair* const pairs = tissue.pairs.pairs.data();
+  const std::int64_t* const row = tissue.pairs.row.data();
   const PairGradient<Dim>* const gradients = tissue.gradients.data();
   const Mat<Dim>* const nominal = tissue.nominal_force.values().data();
-  Vec<Dim>* const force = tissue.force.values().data();
   const Vec<Dim>* const velocity = tissue.cells.velocity.values().data();
+  const Mat<Dim>* const gradient = tissue.velocity_gradient.values().data();
+  const double* const weight = terms.weight.data();
+  const double* const damping = terms.damping ? terms.damping->values().data() : nullptr;
+  const Vec<Dim>* const start = NonAffine ? terms.non_affine->start_position->values().data() : nullptr;
+  Vec<Dim>* const slip = NonAffine ? terms.non_affine->slip_mm.data() : nullptr;
+  const double control_damping = NonAffine ? terms.non_affine->damping : 0.0;
+  const double control_stiffness = NonAffine ? terms.non_affine->stiffness_MPa : 0.0;
+  const double viscosity = Viscous ? terms.viscosity->coefficient : 0.0;
+  Vec<Dim>* const force = tissue.force.values().data();
 
   for_each_block(tissue.pairs, [&](const PairBlock& block) {
-    for (std::int64_t k = block.first_pair; k < block.last_pair; ++k) {
-      const auto [i, j] = pairs[k];
-      const PairGradient<Dim>& g = gradients[k];
-      Vec<Dim> f = nominal[i] * g.at_i - nominal[j] * g.at_j;
-      if constexpr (NonAffine || Viscous) {
-        const Vec<Dim> du = velocity[j] - velocity[i];
-        const double damping = (*terms.damping)[i] + (*terms.damping)[j];
-        Vec<Dim> resisted = Vec<Dim>::Zero();
-        if constexpr (NonAffine) {
-          NonAffineControl<Dim>& control = *terms.non_affine;
-          const Vec<Dim> r = (*control.start_position)[j] - (*control.start_position)[i];
-          const Vec<Dim> v = du - 0.5 * ((tissue.velocity_gradient[i] + tissue.velocity_gradient[j]) * r);
-          Vec<Dim>& slip = control.slip_mm[k];
-          resisted += control.damping * damping * v + control.stiffness_MPa * (slip + advance.used_h * v);
-          slip += advance.kept_h * v;
+    for (std::int64_t i = block.first_cell; i < block.last_cell; ++i) {
+      const Mat<Dim> nominal_i = nominal[i];
+      const Vec<Dim> velocity_i = velocity[i];
+      const Mat<Dim> gradient_i = gradient[i];
+      Vec<Dim> sum = Vec<Dim>::Zero();
+      for (std::int64_t k = row[i]; k < row[i + 1]; ++k) {
+        const std::int32_t j = pairs[k].j;
+        Vec<Dim> f = nominal_i * gradients[k].at_i - nominal[j] * gradients[k].at_j;
+        if constexpr (NonAffine || Viscous) {
+          const Vec<Dim> du = velocity[j] - velocity_i;
+          const double both = damping[i] + damping[j];
+          Vec<Dim> resisted = Vec<Dim>::Zero();
+          if constexpr (NonAffine) {
+            const Vec<Dim> r = start[j] - start[i];
+            const Vec<Dim> v = du - 0.5 * ((gradient_i + gradient[j]) * r);
+            const Vec<Dim> e = slip[k];
+            resisted += control_damping * both * v + control_stiffness * (e + advance.used_h * v);
+            slip[k] = e + advance.kept_h * v;
+          }
+          if constexpr (Viscous) resisted += viscosity * both * du;
+          f += weight[k] * resisted;
         }
-        if constexpr (Viscous) resisted += terms.viscosity->coefficient * damping * du;
-        f += terms.weight[k] * resisted;
+        sum += f;
+        force[j] -= f;
       }
-      force[i] += f;
-      force[j] -= f;
+      force[i] += sum;
     }
   });
 }
@@ -43,17 +59,23 @@ void add_forces(Tissue<Dim>& tissue, PairTerms<Dim>& terms, SlipAdvance advance)
 template <int Dim>
 void compute_velocity_gradients(Tissue<Dim>& tissue) {
   const Pair* const pairs = tissue.pairs.pairs.data();
+  const std::int64_t* const row = tissue.pairs.row.data();
   const PairGradient<Dim>* const gradients = tissue.gradients.data();
   const Vec<Dim>* const velocity = tissue.cells.velocity.values().data();
   Mat<Dim>* const gradient = tissue.velocity_gradient.values().data();
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < tissue.cells.size(); ++i) gradient[i].setZero();
   for_each_block(tissue.pairs, [&](const PairBlock& block) {
-    for (std::int64_t k = block.first_pair; k < block.last_pair; ++k) {
-      const auto [i, j] = pairs[k];
-      const Vec<Dim> du = velocity[j] - velocity[i];
-      gradient[i].noalias() += du * gradients[k].at_i.transpose();
-      gradient[j].noalias() -= du * gradients[k].at_j.transpose();
+    for (std::int64_t i = block.first_cell; i < block.last_cell; ++i) {
+      const Vec<Dim> velocity_i = velocity[i];
+      Mat<Dim> sum = Mat<Dim>::Zero();
+      for (std::int64_t k = row[i]; k < row[i + 1]; ++k) {
+        const std::int32_t j = pairs[k].j;
+        const Vec<Dim> du = velocity[j] - velocity_i;
+        sum.noalias() += du * gradients[k].at_i.transpose();
+        gradient[j].noalias() -= du * gradients[k].at_j.transpose();
+      }
+      gradient[i] += sum;
     }
   });
 }

@@ -9,7 +9,7 @@
 namespace rootsoil {
 
 /// Resistance against pair motions that no velocity gradient can see (odd-even modes): the pair velocity minus
-/// its affine part is damped, and its integral e is resisted by a small elastic penalty. PHYSICS.md 5.4.
+/// its affine part is damped, and its integral e is resisted by a small elastic penalty. docs/physics.md 5.4.
 template <int Dim>
 struct NonAffineControl {
   double damping;                 ///< alpha
@@ -42,7 +42,7 @@ PairTerms<Dim> make_pair_terms(ParticleStore<Dim>& cells, double E_axial_MPa, st
 
 /// Weights for new pairs; e moves from the old pairs to the new ones, turned with the tissue since the old
 /// window's start and relaxed by growth, e exp(-window lambda/rho0): kept whole, an irregular growing tip
-/// bloats; forgotten, an odd-even displacement freezes in (both measured, PHYSICS.md 5.4).
+/// bloats; forgotten, an odd-even displacement freezes in (both measured, docs/physics.md 5.4).
 template <int Dim>
 void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, double window_h, PairTerms<Dim>& terms);
 

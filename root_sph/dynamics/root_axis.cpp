@@ -185,8 +185,8 @@ void RootAxis<Dim>::restore(const std::vector<double>& saved) {
 }
 
 template <int Dim>
-double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis) {
-  if (tissue.pressure_MPa == 0.0) return 0.0;
+double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, double window_h) {
+  if (tissue.pressure_MPa == 0.0 || window_h <= 0.0) return 0.0;
   const auto& cells = tissue.cells;
   const double width = axis.bin_mm();
   const std::size_t bins = bin_of(axis.length_mm(), width) + 1;
@@ -195,7 +195,11 @@ double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells.clamped[i]) continue;
     const std::size_t b = std::min(bins - 1, bin_of(cells.distance_to_tip[i], width));
-    force[b] += tissue.force[i].dot(cells.frame[i].col(0));
+    Vec<Dim> acceleration = (cells.velocity[i] - tissue.start_velocity[i]) / window_h;
+    if (tissue.body_acceleration) acceleration -= (*tissue.body_acceleration)[i];
+    if (tissue.inverse_inertia[i][0] > 0.0) {
+      force[b] += acceleration.dot(cells.frame[i].col(0)) / tissue.inverse_inertia[i][0];
+    }
     volume[b] += cells.volume[i];
     total += cells.volume[i];
   }
@@ -210,7 +214,7 @@ double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis) {
 
 template class RootAxis<2>;
 template class RootAxis<3>;
-template double inertia_error<2>(const Tissue<2>&, const RootAxis<2>&);
-template double inertia_error<3>(const Tissue<3>&, const RootAxis<3>&);
+template double inertia_error<2>(const Tissue<2>&, const RootAxis<2>&, double);
+template double inertia_error<3>(const Tissue<3>&, const RootAxis<3>&, double);
 
 }  // namespace rootsoil

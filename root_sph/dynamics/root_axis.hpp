@@ -46,9 +46,10 @@ class RootAxis {
 };
 
 /// max over s of |sum of unbalanced axial force between the tip and s| / (p x cross-section): by how much inertia
-/// changes the axial stress, relative to the pressure differential.
+/// changes the axial stress, relative to the pressure differential. Mean over the latest window, from the change of
+/// momentum beyond what prescribed accelerations explain; the chatter of contacts within a window does not count.
 template <int Dim>
-double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis);
+double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, double window_h);
 
 extern template class RootAxis<2>;
 extern template class RootAxis<3>;

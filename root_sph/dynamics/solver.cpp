@@ -57,6 +57,7 @@ void Solver<Dim>::begin_window() {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     tissue_.deformation[i].setIdentity();
     tissue_.axial_strain[i] = 0.0;
+    tissue_.start_velocity[i] = cells.velocity[i];
     tissue_.window_index[i] = static_cast<std::int64_t>(i);
     if (terms_.non_affine) {
       (*terms_.non_affine->start_position)[i] = cells.position[i];

@@ -4,7 +4,7 @@
 // Growth is quasi-static; inertia is a numerical device (mass scaling) and the step is the accuracy knob. The
 // leapfrog is stable when M >= K dt^2/4. K is bounded row by row by the sum of the magnitudes of its entries
 // (Gershgorin), separately along each material axis: lateral directions carry the large E_R, the axial one does
-// not have to. PHYSICS.md 5.5 and docs/decisions/0003.
+// not have to. docs/physics.md 5.5 and docs/decisions/0003.
 #pragma once
 
 #include "root_sph/dynamics/pair_terms.hpp"

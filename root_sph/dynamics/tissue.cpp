@@ -31,6 +31,9 @@ Tissue<Dim>::Tissue()
           on_division::recomputed<Dim, Vec<Dim>>)),
       axial_strain(cells.template declare<double>({"axial_strain", "1", "since the start of the window", Storage::scratch},
                                                   on_division::recomputed<Dim, double>)),
+      start_velocity(cells.template declare<Vec<Dim>>(
+          {"start_velocity", "mm/h", "at the start of the window", Storage::scratch},
+          on_division::recomputed<Dim, Vec<Dim>>)),
       window_index(cells.template declare<std::int64_t>(
           {"window_index", "1", "index in the window before, -1 when divided since", Storage::scratch},
           forget_index<Dim>)) {}

@@ -52,6 +52,7 @@ struct Tissue {
   Field<Dim, Vec<Dim>>& force;              ///< N
   Field<Dim, Vec<Dim>>& inverse_inertia;    ///< along the material axes, mm/(N h^2); 0 where held
   Field<Dim, double>& axial_strain;         ///< since the window's start
+  Field<Dim, Vec<Dim>>& start_velocity;     ///< at the window's start, mm/h
   Field<Dim, std::int64_t>& window_index;   ///< index in the window before; -1: divided since
 
   PairList pairs;

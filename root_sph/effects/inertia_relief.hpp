@@ -8,7 +8,7 @@
 namespace rootsoil {
 
 /// Cancels the leading axial error in steady growth: the acceleration that the flow along the root must have,
-/// e(L) v(L) - e(s) v(s), is given to the cells rather than paid for by stress (PHYSICS.md 5.9).
+/// e(L) v(L) - e(s) v(s), is given to the cells rather than paid for by stress (docs/physics.md 5.9).
 template <int Dim>
 class InertiaCompensationEffect final : public Effect<Dim> {
  public:

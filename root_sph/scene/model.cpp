@@ -85,8 +85,8 @@ double automatic_step_h(const Scene& scene) {
   const double length = scene.root.cells_file.empty() ? scene.root.length_mm : 0.5;
   const double speed = closed_form_flow<Dim>(scene, length).tip_speed_mm_h;
   if (speed > 0.0) return std::min(1e-3, fraction * size / speed);
-  // Static: enough steps for the slowest mode to settle, some 60 a cell along the root.
-  return scene.scene.duration_h / std::max(2000.0, 60.0 * length / size);
+  // Static: critically damped, the slowest mode settles to rounding within some 10 steps a cell along the root.
+  return scene.scene.duration_h / std::max(2000.0, 25.0 * length / size);
 }
 
 }  // namespace

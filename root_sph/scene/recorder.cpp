@@ -147,7 +147,7 @@ HistoryRow make_history_row(const Model<Dim>& model, const LengthMark& before, s
 
   HistoryRow row;
   row.length_mm = axis.length_mm();
-  row.inertia_error = inertia_error<Dim>(tissue, axis);
+  row.inertia_error = inertia_error<Dim>(tissue, axis, model.solver.window_h());
   Vec<Dim> contact = Vec<Dim>::Zero();
   for (const auto& effect : model.effects) contact += effect->contact_force_N();
   row.momentum_residual = relative_momentum_residual<Dim>(tissue, contact);

@@ -99,7 +99,7 @@ struct ObstacleSection {
   double contact_modulus_MPa = 0.0;        ///< resolved: E_axial_MPa where the scene gives none
 };
 
-/// Damps and resists pair motions that no velocity gradient can see (PHYSICS.md 5.4).
+/// Damps and resists pair motions that no velocity gradient can see (docs/physics.md 5.4).
 struct NonAffineControlSection {
   double damping = 0.5;     ///< alpha
   double stiffness = 0.05;  ///< fraction of E_axial

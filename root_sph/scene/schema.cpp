@@ -240,7 +240,7 @@ Key<PressureSection> pressure_table(Limits limits) {
             .limits = std::move(limits),
             .choices = {},
             .meaning = "[[time, pressure], ...]: linear in between, constant before the first and after the last.",
-            .source = "PHYSICS 3",
+            .source = "docs/physics.md 3",
             .default_text = "none",
             .condition = {},
             .response_section = {},
@@ -275,7 +275,7 @@ std::vector<SectionSpec> make_schema() {
     key(&Sc::duration_h, "duration_h", "h", above(0).up_to(1e4, seconds), "Simulated time.", "Table 1: T").required(),
     key(&Sc::seed, "seed", "-", at_least(0), "Start of the random numbers (jitter, size_variation).", "-"),
     key(&Sc::allow_unstable, "allow_unstable", "-", any_number,
-        "Run even where waves in the tissue grow by themselves.", "PHYSICS 3"),
+        "Run even where waves in the tissue grow by themselves.", "docs/physics.md 3"),
   }));
 
   using Ro = RootSection;
@@ -292,17 +292,17 @@ std::vector<SectionSpec> make_schema() {
     key(&Ro::cell_size_mm, "cell_size_mm", "mm", above(0).up_to(1, microns), "Spacing of the lattice.", "Table 1: l0")
         .required().only_without("cells_file"),
     key(&Ro::jitter, "jitter", "-", between(0, 0.5), "Random displacement of the centres, fraction of the spacing.",
-        "PHYSICS 5").only_without("cells_file"),
+        "docs/physics.md 5").only_without("cells_file"),
     key(&Ro::size_variation, "size_variation", "-", between(0, 0.95), "Cell volumes vary by a factor 1-v to 1+v.",
-        "PHYSICS 7").only_without("cells_file"),
+        "docs/physics.md 7").only_without("cells_file"),
     key(&Ro::curvature_per_mm, "curvature_per_mm", "1/mm", between(-1e3, 1e3),
-        "Initial curvature of the axis, x-y plane.", "PHYSICS 7").only_without("cells_file"),
+        "Initial curvature of the axis, x-y plane.", "docs/physics.md 7").only_without("cells_file"),
     key(&Ro::base_obliquity_deg, "base_obliquity_deg", "deg", between(-80, 80), "Angle of the cut at the base.",
-        "PHYSICS 7").only_without("cells_file"),
+        "docs/physics.md 7").only_without("cells_file"),
     key(&Ro::cap, "cap", "-", any_number, "Round tip; false: cut straight.", "paper 4.4").only_without("cells_file"),
     key(&Ro::base, "base", "-", one_of({"clamped", "free"}), "How the base is held.", "paper 4.4"),
     key(&Ro::clamp_length_mm, "clamp_length_mm", "mm", at_least(0).up_to(1e3, microns),
-        "Length held at the base; 0 = three cells.", "PHYSICS 5").only_where("base", {"clamped"}),
+        "Length held at the base; 0 = three cells.", "docs/physics.md 5").only_where("base", {"clamped"}),
   }));
 
   using Ti = TissueSection;
@@ -353,8 +353,8 @@ std::vector<SectionSpec> make_schema() {
     key(&Gr::c_g, "c_g", "-", fraction, "Scale: far from the tip lambda tends to (1+c_g)/2 lambda0.", "Eq. 6, Table 1")
         .required().or_from_response(response_growth),
     key(&Gr::mature_at_mm, "mature_at_mm", "mm", above(0).up_to(1e3, microns),
-        "Growth ends at this distance from the tip; none: Eq. 6 to the letter.", "PHYSICS 4"),
-    key(&Gr::mature_width_mm, "mature_width_mm", "mm", above(0).up_to(1e3, microns), "Width of that end.", "PHYSICS 4")
+        "Growth ends at this distance from the tip; none: Eq. 6 to the letter.", "docs/physics.md 4"),
+    key(&Gr::mature_width_mm, "mature_width_mm", "mm", above(0).up_to(1e3, microns), "Width of that end.", "docs/physics.md 4")
         .only_with("mature_at_mm"),
   }));
 
@@ -404,8 +404,8 @@ std::vector<SectionSpec> make_schema() {
   t.push_back(section<Nc>("non_affine_control", optional,
                           "Damps and resists pair motions that no velocity gradient can see.",
                           [](auto& s) { return &s.non_affine_control; }, {
-    key(&Nc::damping, "damping", "-", at_least(0), "Damping alpha.", "PHYSICS 5.4"),
-    key(&Nc::stiffness, "stiffness", "-", at_least(0), "Elastic penalty, fraction of E_A.", "PHYSICS 5.4"),
+    key(&Nc::damping, "damping", "-", at_least(0), "Damping alpha.", "docs/physics.md 5.4"),
+    key(&Nc::stiffness, "stiffness", "-", at_least(0), "Elastic penalty, fraction of E_A.", "docs/physics.md 5.4"),
   }));
 
   using Ob = ObstacleSection;
@@ -443,30 +443,30 @@ std::vector<SectionSpec> make_schema() {
   t.push_back(section<Nu>("numerics", defaulted, "How it is computed. Keys that are left out follow from accuracy.",
                           [](auto& s) { return &s.numerics; }, {
     key(&Nu::accuracy, "accuracy", "-", one_of(preset_names()), "Preset for the keys that are left out.", "-"),
-    key(&Nu::step_h, "step_h", "h", above(0).up_to(1, seconds), "Time step.", "PHYSICS 5.5")
+    key(&Nu::step_h, "step_h", "h", above(0).up_to(1, seconds), "Time step.", "docs/physics.md 5.5")
         .defaults_to("from accuracy"),
     key(&Nu::window_steps, "window_steps", "-", between(1, 1000),
-        "Steps for which neighbours and gradients stay frozen.", "PHYSICS 5.6").defaults_to("from accuracy"),
+        "Steps for which neighbours and gradients stay frozen.", "docs/physics.md 5.6").defaults_to("from accuracy"),
     key(&Nu::kernel, "kernel", "-", one_of({"cell", "isotropic"}),
-        "cell: in the metric of each cell; isotropic: the paper's.", "PHYSICS 5.1, paper 4.4"),
-    key(&Nu::eta, "eta", "-", between(0.5, 5), "Kernel size over cell size (cell kernel).", "PHYSICS 5.1")
+        "cell: in the metric of each cell; isotropic: the paper's.", "docs/physics.md 5.1, paper 4.4"),
+    key(&Nu::eta, "eta", "-", between(0.5, 5), "Kernel size over cell size (cell kernel).", "docs/physics.md 5.1")
         .defaults_to("from accuracy"),
     key(&Nu::H_bar, "H_bar", "-", above(0).up_to(20, {}), "Kernel size over cell size (isotropic kernel).",
         "Table 1: 2 to 8"),
     key(&Nu::gradient, "gradient", "-", one_of({"plain", "linear", "quadratic", "quadratic_at_surface"}),
-        "Order to which the gradient is exact.", "PHYSICS 5.2, 5.8").defaults_to("from accuracy"),
+        "Order to which the gradient is exact.", "docs/physics.md 5.2, 5.8").defaults_to("from accuracy"),
     key(&Nu::stepper, "stepper", "-", one_of({"symplectic", "predictor_corrector"}), "Time stepping.", "paper 4.4"),
-    key(&Nu::inertia, "inertia", "-", one_of({"tensor", "scalar"}), "Inertia from the stability bound.", "PHYSICS 5.5"),
+    key(&Nu::inertia, "inertia", "-", one_of({"tensor", "scalar"}), "Inertia from the stability bound.", "docs/physics.md 5.5"),
     key(&Nu::inertia_compensation, "inertia_compensation", "-", any_number,
-        "Cancel the leading inertia error of steady growth.", "PHYSICS 5.9"),
+        "Cancel the leading inertia error of steady growth.", "docs/physics.md 5.9"),
     key(&Nu::mass_damping_per_h, "mass_damping_per_h", "1/h", at_least(0),
-        "Damping that settles a root without growth.", "PHYSICS 5.11").defaults_to("growth: 0, else 2 omega"),
+        "Damping that settles a root without growth.", "docs/physics.md 5.11").defaults_to("growth: 0, else 2 omega"),
     key(&Nu::midline_damping_per_h, "midline_damping_per_h", "1/h", at_least(0),
         "Damping of the midline's lateral motion, against hose flutter.", "docs/decisions/0003")
         .defaults_to("growth, no obstacle: 5"),
-    key(&Nu::artificial_viscosity, "artificial_viscosity", "-", at_least(0), "Bulk pair viscosity.", "PHYSICS 6"),
+    key(&Nu::artificial_viscosity, "artificial_viscosity", "-", at_least(0), "Bulk pair viscosity.", "docs/physics.md 6"),
     key(&Nu::start, "start", "-", one_of({"equilibrium", "rest"}),
-        "equilibrium: stress p and the closed form's velocity; rest: the paper's.", "PHYSICS 5.9, paper 4.4"),
+        "equilibrium: stress p and the closed form's velocity; rest: the paper's.", "docs/physics.md 5.9, paper 4.4"),
   }));
 
   using Ou = OutputSection;

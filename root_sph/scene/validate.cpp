@@ -222,7 +222,7 @@ std::vector<double> radial_moduli_MPa(const Scene& scene) {
   return moduli;
 }
 
-/// The compliance matrix (Eq. 4; 2D: PHYSICS.md 3) is positive definite where 0 < E_R < this.
+/// The compliance matrix (Eq. 4; 2D: docs/physics.md 3) is positive definite where 0 < E_R < this.
 double largest_radial_modulus_MPa(const TissueSection& tissue, int dimension) {
   const double nu2 = tissue.nu_axial * tissue.nu_axial;
   return dimension == 2 ? tissue.E_axial_MPa / nu2 : tissue.E_axial_MPa * (1 - tissue.nu_radial) / (2 * nu2);

@@ -8,7 +8,10 @@ from typing import Any
 import pytest
 from cli_support import FULL, SECTIONS, SMALL, Program, replaced, summary
 
-PROBE = '\n[[probe]]\nname = "cell"\nposition_mm = [0.2, 0.0]\n'
+PROBES = {
+    'name = "bin"\ndistance_to_tip_mm = [0.1, 0.2]': set(),
+    'name = "cell"\nposition_mm = [0.2, 0.0]': {"probe cell"},  # which cells descend from the one it began with
+}
 # section: its name in the list of effects, and what it alone brings
 FIELDS = {
     "anisotropy": ("anisotropy", {"radial_modulus", "stiffness"}),
@@ -98,11 +101,13 @@ def test_nothing_at_all(program: Program, full: dict[str, Any]):
     assert found["bytes_per_pair"] < full["bytes_per_pair"]
 
 
-def test_a_probe_brings_no_field(program: Program, full: dict[str, Any]):
-    """A probe is listed, and adds nothing to the cells or to the pairs."""
-    found = program("check", program.scene(FULL + PROBE), "--json").json()
+@pytest.mark.parametrize("probe", PROBES)
+def test_a_probe(program: Program, full: dict[str, Any], probe: str):
+    """A probe is listed; one in a bin adds nothing to the cells, one at a cell a mark; none adds to the pairs."""
+    found = program("check", program.scene(f"{FULL}\n[[probe]]\n{probe}\n"), "--json").json()
     assert active(found) == active(full) | {"probe"}
-    for key in ("fields", "bytes_per_cell", "pair_terms", "bytes_per_pair", "cells", "step_h"):
+    assert names(found["fields"]) - names(full["fields"]) == PROBES[probe]
+    for key in ("pair_terms", "bytes_per_pair", "cells", "step_h"):
         assert found[key] == full[key]
 
 

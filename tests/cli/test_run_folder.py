@@ -47,6 +47,7 @@ def test_history(full_run: Path):
     assert np.allclose([row["time_h"] for row in rows], np.linspace(0.0, 0.4, 5), atol=1e-12)
     for row, frame in zip(rows, frames(full_run), strict=True):
         assert row["time_h"] == frame["time_h"] and row["cells"] == len(frame["position"])
+        assert row["cells"] - row["divisions"] == rows[0]["cells"], "a cell has gone"
         assert np.all(np.isfinite(list(row.values())))
         force = [row[f"contact_force_{axis}_N"] for axis in "xyz"]
         assert np.isclose(np.linalg.norm(force), row["contact_force_N"])
@@ -92,9 +93,10 @@ def test_frames(full_run: Path):
             ids = set(group["cell_id"][()].tolist())
             assert len(ids) == len(group["cell_id"])
             assert np.all(np.diff(group["cell_axes"][()][:, :2], axis=1) <= 0)
-            # a cell that divides gives way to two daughters; none goes otherwise
-            assert seen - ids <= set(group["parent_id"][()].tolist())
-            seen = ids
+            # a cell that divides gives way to two daughters with numbers of their own; no number comes twice
+            assert np.all(group["parent_id"][()] < group["cell_id"][()])
+            assert not seen or min(ids - seen) > max(seen)
+            seen |= ids
 
 
 def test_paraview_file(full_run: Path):

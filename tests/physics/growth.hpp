@@ -76,7 +76,7 @@ GrowthErrors growth_errors(const std::string& text, const std::vector<std::strin
   record("axial rate, rms of bins, relative", errors.rate_relative);
   record("axial stress, rms of sigma/p - 1", stress.axial);
   record("radial stress, rms of sigma/p - 1", stress.radial);
-  record("inertia error", inertia_error(run.tissue, run.solver.axis()));
+  record("inertia error", inertia_error(run.tissue, run.solver.axis(), run.solver.window_h()));
   record("momentum residual, largest", worst_momentum);
   EXPECT_LT(worst_momentum, 1e-12);
   return errors;

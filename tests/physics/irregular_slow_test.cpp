@@ -85,5 +85,20 @@ TEST(LongGrowth, ClosedForm2DReference) {
   EXPECT_LT(e.rate_relative, 0.02);
 }
 
+// The growth zone must fit into the root: a held base inside it keeps the tissue there from widening.
+const std::vector<std::string> short_zone_3d{"scene.dimension=3",   "root.radius_mm=0.03", "root.length_mm=0.7",
+                                             "growth.x_g_mm=-0.02", "growth.s_g_mm=0.14",  "tissue.anisotropy.x_e_mm=0.2"};
+
+TEST(LongGrowth, ClosedForm3D) {
+  const GrowthErrors e = growth_errors<3>(growth_case, short_zone_3d, 1.0, 3.0);
+  EXPECT_LT(std::abs(e.tip_speed), 0.005);
+  EXPECT_LT(e.rate_relative, 0.02);
+}
+
+TEST(LongGrowth, ClosedForm3DWithDivision) {
+  const GrowthErrors e = growth_errors<3>(growth_case + division, short_zone_3d, 1.0, 5.0);
+  EXPECT_LT(std::abs(e.tip_speed), 0.005);
+}
+
 }  // namespace
 }  // namespace rootsoil::physics

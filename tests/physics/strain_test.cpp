@@ -6,7 +6,7 @@ namespace rootsoil::physics {
 namespace {
 
 const std::vector<std::string> small_2d{"root.length_mm=1", "root.radius_mm=0.05"};
-const std::vector<std::string> small_3d{"scene.dimension=3", "root.length_mm=0.5", "root.radius_mm=0.04"};
+const std::vector<std::string> small_3d{"scene.dimension=3", "root.length_mm=0.4", "root.radius_mm=0.03"};
 
 TEST(Strain, IsotropicTissue2D) {
   const AxialRadial error = strain_error<2>(strain_case, small_2d, 0.1, 0.7);
@@ -23,7 +23,7 @@ TEST(Strain, BalancedTissue2D) {
 }
 
 TEST(Strain, IsotropicTissue3D) {
-  const AxialRadial error = strain_error<3>(strain_case, small_3d, 0.1, 0.4);
+  const AxialRadial error = strain_error<3>(strain_case, small_3d, 0.1, 0.3);
   EXPECT_LT(error.axial, 0.03);
   EXPECT_LT(error.radial, 0.03);
 }

@@ -150,7 +150,7 @@ TEST(MassSource, FollowsEquation2InTensionOnly) {
 }
 
 // Table 1 with G = 481 MPa in the plane, the paper's law to the letter: waves that grow by themselves. The numbers are
-// from a scan in quarter degrees written apart from this code; PHYSICS.md section 3 has 324, 694 and 1057 MPa, 1-3 %
+// from a scan in quarter degrees written apart from this code; docs/physics.md 3 has 324, 694 and 1057 MPa, 1-3 %
 // lower, and 33 degrees.
 TEST(Hyperbolicity, OfThePressureDeviatorLawIsLostWithTheKnownGrowthRates) {
   struct Case {

@@ -12,10 +12,6 @@ PROJECT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(PROJECT / "tools"), str(PROJECT / "tests" / "tools")]
 
 
-def pytest_configure(config: pytest.Config) -> None:
-    config.addinivalue_line("markers", "slow: left out by tools/test.sh --quick")
-
-
 @pytest.fixture(scope="session")
 def project() -> Path:
     """The project's folder."""
