@@ -39,6 +39,7 @@ struct Hooks {
   Passes<std::vector<Vec<Dim>>&> stiffness;  ///< add to the stability bound, N/mm along the material axes
   Passes<> step_start;
   Passes<SlipAdvance> forces;  ///< add to the forces of cells
+  Passes<> window_end;         ///< pairs and deformation of the window are still there; what remains is state
 
   template <class... Arguments>
   static void run(const Passes<Arguments...>& passes, PhaseClock& clock, Tissue<Dim>& tissue, Arguments... arguments) {

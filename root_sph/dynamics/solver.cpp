@@ -136,6 +136,7 @@ void Solver<Dim>::end_window() {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     cells.shape[i] = deformed_shape<Dim>(cells.shape[i], tissue_.deformation[i]);
   }
+  Hooks<Dim>::run(hooks_.window_end, clock_, tissue_);
   clock_.measure("root axis", [&] { axis_.measure_flow(tissue_, window_h_); });
 }
 

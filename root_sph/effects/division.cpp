@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/effects/division.hpp"
 
+#include "root_sph/kernels/wendland.hpp"
+
+#include <algorithm>
 #include <cmath>
 
 namespace rootsoil {
@@ -17,7 +20,42 @@ LongestAxis<Dim> longest_axis(const Mat<Dim>& shape) {
 }
 
 template <int Dim>
+void even_out_spacing(Solver<Dim>& solver) {
+  constexpr double rate_per_h = 10.0;  // fast against a generation, slow against a window
+  Tissue<Dim>& tissue = solver.tissue();
+  auto& cells = tissue.cells;
+  const double share = std::min(0.1, rate_per_h * solver.window_h());
+  const double eta = solver.options().eta;
+  // first moment of the neighbours' volume along the axis, in the cell's own metric: that of a pair is biased towards
+  // longer cells
+  std::vector<double> moment(cells.size(), 0.0), weight(cells.size(), 0.0);
+  for_each_block(tissue.pairs, [&](const PairBlock& block) {
+    for (std::int64_t k = block.first_pair; k < block.last_pair; ++k) {
+      const auto [i, j] = tissue.pairs.pairs[k];
+      const Vec<Dim> r = cells.position[j] - cells.position[i];
+      const auto add = [&](std::size_t cell, std::size_t other, const Vec<Dim>& to_other) {
+        const double q = std::sqrt(to_other.dot(cell_metric<Dim>(cells.shape[cell], eta) * to_other));
+        const double w = cells.volume[other] * wendland_slope<Dim>(q, 1.0);
+        moment[cell] += w * to_other.dot(cells.frame[cell].col(0));
+        weight[cell] += w * q;
+      };
+      add(i, j, r);
+      add(j, i, -r);
+    }
+  });
+  const double tip_mm = 4.0 * solver.axis().bin_mm();  // a diameter
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells.clamped[i] || weight[i] <= 0.0 || cells.distance_to_tip[i] < tip_mm) continue;
+    const Vec<Dim> shift = -share * moment[i] / weight[i] * cells.frame[i].col(0);
+    cells.velocity[i] += tissue.velocity_gradient[i] * tissue.deformation[i].inverse() * shift;
+    cells.position[i] += shift;
+  }
+}
+
+template <int Dim>
 DivisionEffect<Dim>::DivisionEffect(Solver<Dim>& solver, DivisionThresholdProfile threshold) {
+  solver.hooks().window_end.emplace_back("even spacing", [&solver](Tissue<Dim>&) { even_out_spacing<Dim>(solver); });
   solver.hooks().window_start.emplace_back("division", [threshold](Tissue<Dim>& tissue) {
     auto& cells = tissue.cells;
     const std::size_t mothers = cells.size();
@@ -42,6 +80,8 @@ DivisionEffect<Dim>::DivisionEffect(Solver<Dim>& solver, DivisionThresholdProfil
 
 template LongestAxis<2> longest_axis<2>(const Mat<2>&);
 template LongestAxis<3> longest_axis<3>(const Mat<3>&);
+template void even_out_spacing<2>(Solver<2>&);
+template void even_out_spacing<3>(Solver<3>&);
 template class DivisionEffect<2>;
 template class DivisionEffect<3>;
 

@@ -309,11 +309,11 @@ std::vector<SectionSpec> make_schema() {
   t.push_back(section<Ti>("tissue", required, "Elastic law of the tissue.", [](auto& s) { return &s.tissue; }, {
     key(&Ti::law, "law", "-", one_of({"elastic_growth", "pressure_deviator"}),
         "elastic_growth: full stress, growth along the elastic strain; pressure_deviator: Eq. 1-4 to the letter.",
-        "paper Eq. 1-4, PHYSICS 3"),
+        "paper Eq. 1-4, docs/physics.md 3"),
     key(&Ti::E_axial_MPa, "E_axial_MPa", "MPa", modulus, "Axial Young modulus E_A.", "Table 1: 1020").required(),
     key(&Ti::nu_axial, "nu_axial", "-", inside(-1, 1), "Axial Poisson ratio nu_A.", "Table 1: 0.06"),
     key(&Ti::nu_radial, "nu_radial", "-", inside(-1, 1), "Radial Poisson ratio nu_R (3D).", "Table 1: 0.3"),
-    key(&Ti::G_MPa, "G_MPa", "MPa", modulus, "Shear modulus between axis and radius.", "paper Eq. 4, PHYSICS 3")
+    key(&Ti::G_MPa, "G_MPa", "MPa", modulus, "Shear modulus between axis and radius.", "paper Eq. 4, docs/physics.md 3")
         .defaults_to("E_A/(2(1+nu_A))"),
     key(&Ti::rho0_ug_mm3, "rho0_ug_mm3", "ug/mm^3", above(0).up_to(1e6, {}), "Equilibrium density.", "Table 1: 1000"),
   }));
@@ -344,7 +344,7 @@ std::vector<SectionSpec> make_schema() {
                           "exp(0.5 - (s-x_g)^2/(2 s_g^2))), never below 0.",
                           [](auto& s) { return &s.growth; }, {
     key(&Gr::lambda0_ug_mm3_h, "lambda0_ug_mm3_h", "ug/mm^3/h", softening,
-        "Softening coefficient; measured roots need about a tenth of the printed values.", "Eq. 6, Table 1, PHYSICS 4")
+        "Softening coefficient; measured roots need about a tenth of the printed values.", "Eq. 6, Table 1, docs/physics.md 4")
         .required().or_from_response(response_growth),
     key(&Gr::x_g_mm, "x_g_mm", "mm", place_mm, "Inflection of the bell; its peak lies at x_g + s_g.", "Eq. 6, Table 1")
         .required().or_from_response(response_growth),
