@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/effects/division.hpp"
 
-#include "root_sph/kernels/wendland.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -21,35 +19,36 @@ LongestAxis<Dim> longest_axis(const Mat<Dim>& shape) {
 
 template <int Dim>
 void even_out_spacing(Solver<Dim>& solver) {
-  constexpr double rate_per_h = 10.0;  // fast against a generation, slow against a window
+  constexpr double rate_per_h = 10.0;    // fast against a generation, slow against a window
+  constexpr double adjacent = 1.3;       // ellipsoids this near to touching are neighbours in a file; diagonals are at 1.41
+  constexpr double along = 0.8;          // cosine to the root axis
   Tissue<Dim>& tissue = solver.tissue();
   auto& cells = tissue.cells;
-  const double share = std::min(0.1, rate_per_h * solver.window_h());
-  const double eta = solver.options().eta;
-  // first moment of the neighbours' volume along the axis, in the cell's own metric: that of a pair is biased towards
-  // longer cells
-  std::vector<double> moment(cells.size(), 0.0), weight(cells.size(), 0.0);
+  const double share = 0.5 * std::min(0.2, rate_per_h * solver.window_h());
+  std::vector<double> shift(cells.size(), 0.0);
   for_each_block(tissue.pairs, [&](const PairBlock& block) {
     for (std::int64_t k = block.first_pair; k < block.last_pair; ++k) {
       const auto [i, j] = tissue.pairs.pairs[k];
       const Vec<Dim> r = cells.position[j] - cells.position[i];
-      const auto add = [&](std::size_t cell, std::size_t other, const Vec<Dim>& to_other) {
-        const double q = std::sqrt(to_other.dot(cell_metric<Dim>(cells.shape[cell], eta) * to_other));
-        const double w = cells.volume[other] * wendland_slope<Dim>(q, 1.0);
-        moment[cell] += w * to_other.dot(cells.frame[cell].col(0));
-        weight[cell] += w * q;
-      };
-      add(i, j, r);
-      add(j, i, -r);
+      // 1 where two ellipsoids of equal shape touch
+      const double distance2 = 0.125 * r.dot((cells.shape[i] + cells.shape[j]) * r);
+      if (distance2 > adjacent * adjacent) continue;
+      const double length = r.norm();
+      const Vec<Dim> n = r / length;
+      const double cosine = n.dot(cells.frame[i].col(0));
+      if (std::abs(cosine) < along) continue;
+      const double half_i = 1.0 / std::sqrt(n.dot(cells.shape[i] * n)), half_j = 1.0 / std::sqrt(n.dot(cells.shape[j] * n));
+      const double gap = (length - half_i - half_j) * (cosine > 0.0 ? 1.0 : -1.0);
+      shift[i] += share * gap;
+      shift[j] -= share * gap;
     }
   });
-  const double tip_mm = 4.0 * solver.axis().bin_mm();  // a diameter
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (cells.clamped[i] || weight[i] <= 0.0 || cells.distance_to_tip[i] < tip_mm) continue;
-    const Vec<Dim> shift = -share * moment[i] / weight[i] * cells.frame[i].col(0);
-    cells.velocity[i] += tissue.velocity_gradient[i] * tissue.deformation[i].inverse() * shift;
-    cells.position[i] += shift;
+    if (cells.clamped[i]) continue;
+    const Vec<Dim> moved = shift[i] * cells.frame[i].col(0);
+    cells.velocity[i] += tissue.velocity_gradient[i] * tissue.deformation[i].inverse() * moved;
+    cells.position[i] += moved;
   }
 }
 

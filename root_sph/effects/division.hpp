@@ -7,11 +7,10 @@
 
 namespace rootsoil {
 
-/// Moves cells along the root, by a little, from where their neighbours are dense to where they are sparse (Fickian
-/// shifting; Lind et al. 2012). Spacing and cell length drift apart by a few per cent where the growth rate varies, and
-/// that gap, shared by ever shorter cells, doubles relative to them in every generation until the file is torn. Along
-/// the root only, and not within a diameter of the tip, where the surface itself is one-sided. Runs at the end of
-/// a window.
+/// Moves the cells of a file along the root, by a little, so that gaps and overlaps between them even out. Spacing and
+/// cell length drift apart by a per cent where the growth rate varies, and a gap doubles relative to its cells in every
+/// generation until the file is torn (docs/decisions/0007). Pair by pair and opposite, so the centroid of a file stays.
+/// Uses the pairs of the window; runs at its end.
 template <int Dim>
 void even_out_spacing(Solver<Dim>& solver);
 

@@ -19,11 +19,12 @@ namespace rootsoil {
 /// \return tr(D_g) dt, the relative increase of mass in the step
 template <int Dim>
 double elastic_growth_step(const Stiffness<Dim>& k, const Voigt<Dim>& strain, double growth, Voigt<Dim>& stress) {
-  const double tension = volume_strain<Dim>(k, stress);
   stress += elastic_stress<Dim>(k, strain);
-  if (growth <= 0.0 || tension <= 0.0) return 0.0;
+  if (growth <= 0.0) return 0.0;
+  const double tension = volume_strain<Dim>(k, stress);
+  if (tension <= 0.0) return 0.0;
   stress /= 1.0 + growth;
-  return growth * volume_strain<Dim>(k, stress);
+  return growth * tension / (1.0 + growth);
 }
 
 /// pressure_deviator, the paper's Eq. 1-4 to the letter: P = K (rho/rho0 - 1), d tau/dt = Lambda C : D.

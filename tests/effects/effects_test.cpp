@@ -213,6 +213,45 @@ TYPED_TEST(Effects, DivisionThresholdFollowsTheDistanceFromTheTip) {
   for (std::size_t i = 0; i < s.size(); ++i) EXPECT_EQ(this->tissue.cells.generation[i], s[i] < 1.0 / 30.0 ? 1 : 0);
 }
 
+TYPED_TEST(Effects, DivisionEvensOutSpacingAlongTheRootOnly) {
+  constexpr int dim = TypeParam::value;
+  SolverOptions options;
+  options.step_h = 1e-3;
+  Solver<dim> running(options);
+  DivisionEffect<dim> division(running, {1.0, 1.0, 0.0, 0.0});  // nothing is long enough to divide
+  std::array<int, dim> counts;
+  counts.fill(4);
+  counts[0] = 40;
+  test::fill<dim>(running.tissue(), test::lattice<dim>(counts, 0.01, this->random));
+  auto& cells = running.tissue().cells;
+  // in mid-root a layer has slipped towards the tip; it has no stress and nothing moves
+  std::vector<std::int64_t> layer;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells.clamped[i] = cells.position[i][0] < -0.17;
+    if (std::abs(cells.position[i][0] + 0.005) > 1e-6) continue;
+    cells.position[i][0] += 0.002;
+    layer.push_back(cells.cell_id[i]);
+  }
+  const std::vector<Vec<dim>> before = cells.position.values();
+  running.axis().start(running.tissue());
+  running.prepare();
+  running.advance_window(5);
+  ASSERT_FALSE(layer.empty());
+  const double diameter = 4.0 * running.axis().bin_mm();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto id = static_cast<std::size_t>(cells.cell_id[i]);
+    const Vec<dim> moved = cells.position[i] - before[id];
+    EXPECT_LT(moved.template tail<dim - 1>().norm(), 1e-15);
+    EXPECT_LE(std::abs(moved[0]), 0.1 * 0.01);
+    if (cells.clamped[i] || cells.distance_to_tip[i] < diameter) {
+      EXPECT_EQ(moved[0], 0.0);
+    }
+    if (std::find(layer.begin(), layer.end(), cells.cell_id[i]) != layer.end()) {
+      EXPECT_LT(moved[0], -1e-6);
+    }
+  }
+}
+
 TYPED_TEST(Effects, ProbeAtAPointFollowsTheNearestCellAndItsDescendants) {
   constexpr int dim = TypeParam::value;
   this->fill_root();
