@@ -79,9 +79,9 @@ template <int Dim>
 double automatic_step_h(const Scene& scene) {
   const double size = scene.root.cells_file.empty() ? scene.root.cell_size_mm : 0.01;
   // Cells' lengths that the tip moves in a step: inertia's share of the stress is of the order of its square.
-  double fraction = 0.008;
+  double fraction = 0.010;
   if (scene.numerics.accuracy == "fast") fraction = 0.02;
-  if (scene.numerics.accuracy == "reference") fraction = 0.004;
+  if (scene.numerics.accuracy == "reference") fraction = 0.005;
   const double length = scene.root.cells_file.empty() ? scene.root.length_mm : 0.5;
   const double speed = closed_form_flow<Dim>(scene, length).tip_speed_mm_h;
   if (speed > 0.0) return std::min(1e-3, fraction * size / speed);

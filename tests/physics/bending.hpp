@@ -63,7 +63,7 @@ struct BeamResult {
   double deflection_mm = 0.0;       ///< of the loaded layer
   double load_at_mm = 0.0;          ///< of the loaded layer's centre, from x = 0
   double clamp_at_mm = 0.0;         ///< the first held layer's centre
-  // The held end is not a rigid wall: its own layers strain, and it acts as one some three quarters of a cell behind the
+  // The held end is not a rigid wall: its own layers strain, and it acts as one three quarters of a cell behind the
   // first held layer. Beyond a section one depth from it the root is a beam again, held by the tangent there:
   double beyond_mm = 0.0;           ///< length between that section and the load
   double relative_mm = 0.0;         ///< deflection of the loaded layer from that section's tangent

@@ -27,7 +27,9 @@ TEST(BendingFine, DISABLED_CantileverOfIrregularCells12) { EXPECT_NEAR(cantileve
 TEST(BendingFine, DISABLED_CantileverWithItsClamp12) { EXPECT_NEAR(cantilever<2>(12).first_layer, 1.0, 0.03); }
 
 TEST(BendingFine, Cantilever3D8Across) { EXPECT_NEAR(cantilever<3>(8).beam, 1.0, 0.05); }
-TEST(BendingFine, Cantilever3D8AcrossOfIrregularCells) { EXPECT_NEAR(cantilever<3>(8, irregular).beam, 1.0, 0.05); }
+TEST(BendingFine, DISABLED_Cantilever3D8AcrossOfIrregularCells) {
+  EXPECT_NEAR(cantilever<3>(8, irregular).beam, 1.0, 0.05);
+}
 
 TEST(BendingFine, EulerLoad12Across) {
   const Ratio coarse = buckling<2>(6), middle = buckling<2>(12);

