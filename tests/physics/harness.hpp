@@ -142,8 +142,8 @@ StressScatter stress_scatter(const Tissue<Dim>& tissue, double from_mm, double t
   return scatter;
 }
 
-/// Radius at distances [from, to) of the tip, from the second moment of the volumes about the root's axis there:
-/// 2D y^2 -> R^2/3, 3D y^2 + z^2 -> R^2/2.
+/// Radius at distances [from, to) of the tip, from the second moment of the volumes about the root's axis there,
+/// across the material frames, so that a bent root has the same: 2D y^2 -> R^2/3, 3D y^2 + z^2 -> R^2/2.
 template <int Dim>
 double radius_mm(const Tissue<Dim>& tissue, double from_mm, double to_mm) {
   const auto& cells = tissue.cells;
@@ -161,7 +161,8 @@ double radius_mm(const Tissue<Dim>& tissue, double from_mm, double to_mm) {
   double moment = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!inside(i)) continue;
-    moment += cells.volume[i] * (cells.position[i] - centre).template tail<Dim - 1>().squaredNorm();
+    const Vec<Dim> r = cells.frame[i].transpose() * (cells.position[i] - centre);
+    moment += cells.volume[i] * r.template tail<Dim - 1>().squaredNorm();
   }
   return std::sqrt((Dim == 2 ? 3.0 : 2.0) * moment / volume);
 }

@@ -26,7 +26,10 @@ double theoretical_radius(const Scene& scene, double s_mm, double time_h, double
     log_radius += dt * closed_form_radial_rate<Dim>(scene, s - 0.5 * dt * v);
     s -= dt * v;
   }
-  return initial_radius_mm * std::exp(log_radius);
+  // what began in the cap began thinner
+  const double cap = initial_radius_mm;
+  const double initial = s < cap ? std::sqrt(std::max(0.0, s * (2.0 * cap - s))) : initial_radius_mm;
+  return initial * std::exp(log_radius);
 }
 
 const std::vector<std::string> irregular{"root.jitter=0.3", "root.size_variation=0.3"};

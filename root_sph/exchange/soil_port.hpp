@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// The port through which the root and a soil meet: the motion of the root's surface goes out, forces come in. It knows
+// neither the tissue nor the soil; whoever implements SoilPort (YADE in another process, a half-space or a bed of
+// springs in this one) is chosen when the scene is built.
+//
+// Vectors have three components in 2D and 3D (2D: z = 0, forces in N per mm of depth).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rootsoil {
+
+using Vec3 = std::array<double, 3>;
+
+/// The root's surface over one coupling interval: a sphere (2D: a disc) per marker, in the same order in every column.
+/// A marker moves with constant velocity from start to end. Ids are never used again; one that was not in the interval
+/// before is new, one that is missing is gone.
+struct SurfaceMotion {
+  std::int64_t interval = 0;  ///< counts from 0
+  double time_h = 0.0;        ///< at the interval's start
+  double duration_h = 0.0;
+  std::vector<std::int64_t> id;
+  std::vector<Vec3> start_mm;
+  std::vector<Vec3> end_mm;
+  std::vector<double> radius_mm;
+};
+
+/// What the soil answers: the mean over the interval of the force on every marker, in the motion's order.
+struct SurfaceForces {
+  std::vector<Vec3> mean_N;
+  std::vector<double> contact_stiffness_N_mm;  ///< of each marker's contacts at the interval's end
+  std::map<std::string, double> numbers;       ///< for history.csv, by column name (soil_...)
+};
+
+/// A soil, seen from the root. Throws SoilError when it fails; then nothing of the interval counts.
+class SoilPort {
+ public:
+  virtual ~SoilPort() = default;
+  virtual SurfaceForces advance(const SurfaceMotion& motion) = 0;
+  /// Writes the soil's state to a file of its own / takes it up again. Afterwards both go on identically, bit for bit.
+  virtual void save(const std::filesystem::path& file) = 0;
+  virtual void load(const std::filesystem::path& file) = 0;
+};
+
+}  // namespace rootsoil
