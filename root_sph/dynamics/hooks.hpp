@@ -36,6 +36,7 @@ struct Hooks {
 
   Passes<> window_start;  ///< before distances and neighbours: cells may divide here
   Passes<> parameters;    ///< distances are known: set what depends on them
+  Passes<> operators;     ///< gradient operators are known as well
   Passes<std::vector<Vec<Dim>>&> stiffness;  ///< add to the stability bound, N/mm along the material axes
   Passes<> step_start;
   Passes<SlipAdvance> forces;  ///< add to the forces of cells

@@ -6,7 +6,7 @@ namespace {
 
 // Both loops go row by row: what belongs to cell i stays in registers while its partners j > i pass by.
 
-template <int Dim, bool NonAffine, bool Viscous>
+template <int Dim, bool NonAffine, bool Creeping, bool Viscous>
 void add_forces(Tissue<Dim>& tissue, PairTerms<Dim>& terms, SlipAdvance advance) {
   const Pair* const pairs = tissue.pairs.pairs.data();
   const std::int64_t* const row = tissue.pairs.row.data();
@@ -18,6 +18,7 @@ void add_forces(Tissue<Dim>& tissue, PairTerms<Dim>& terms, SlipAdvance advance)
   const double* const damping = terms.damping ? terms.damping->values().data() : nullptr;
   const Vec<Dim>* const start = NonAffine ? terms.non_affine->start_position->values().data() : nullptr;
   Vec<Dim>* const slip = NonAffine ? terms.non_affine->slip_mm.data() : nullptr;
+  const double* const retention = Creeping ? terms.non_affine->retention.data() : nullptr;
   const double control_damping = NonAffine ? terms.non_affine->damping : 0.0;
   const double control_stiffness = NonAffine ? terms.non_affine->stiffness_MPa : 0.0;
   const double viscosity = Viscous ? terms.viscosity->coefficient : 0.0;
@@ -40,8 +41,13 @@ void add_forces(Tissue<Dim>& tissue, PairTerms<Dim>& terms, SlipAdvance advance)
             const Vec<Dim> r = start[j] - start[i];
             const Vec<Dim> v = du - 0.5 * ((gradient_i + gradient[j]) * r);
             const Vec<Dim> e = slip[k];
-            resisted += control_damping * both * v + control_stiffness * (e + advance.used_h * v);
-            slip[k] = e + advance.kept_h * v;
+            Vec<Dim> used = e + advance.used_h * v, kept = e + advance.kept_h * v;
+            if constexpr (Creeping) {  // implicit in the creep
+              used *= retention[k];
+              if (advance.kept_h > 0.0) kept *= retention[k];
+            }
+            resisted += control_damping * both * v + control_stiffness * used;
+            slip[k] = kept;
           }
           if constexpr (Viscous) resisted += viscosity * both * du;
           f += weight[k] * resisted;
@@ -81,14 +87,15 @@ void compute_velocity_gradients(Tissue<Dim>& tissue) {
 }
 
 template <int Dim>
-ForceLoop<Dim> choose_force_loop(const PairTerms<Dim>& terms) {
-  if (terms.non_affine) return terms.viscosity ? add_forces<Dim, true, true> : add_forces<Dim, true, false>;
-  return terms.viscosity ? add_forces<Dim, false, true> : add_forces<Dim, false, false>;
+ForceLoop<Dim> choose_force_loop(const PairTerms<Dim>& terms, bool grows) {
+  if (!terms.non_affine) return terms.viscosity ? add_forces<Dim, false, false, true> : add_forces<Dim, false, false, false>;
+  if (grows) return terms.viscosity ? add_forces<Dim, true, true, true> : add_forces<Dim, true, true, false>;
+  return terms.viscosity ? add_forces<Dim, true, false, true> : add_forces<Dim, true, false, false>;
 }
 
 template void compute_velocity_gradients<2>(Tissue<2>&);
 template void compute_velocity_gradients<3>(Tissue<3>&);
-template ForceLoop<2> choose_force_loop<2>(const PairTerms<2>&);
-template ForceLoop<3> choose_force_loop<3>(const PairTerms<3>&);
+template ForceLoop<2> choose_force_loop<2>(const PairTerms<2>&, bool);
+template ForceLoop<3> choose_force_loop<3>(const PairTerms<3>&, bool);
 
 }  // namespace rootsoil

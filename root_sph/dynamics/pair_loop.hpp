@@ -24,6 +24,6 @@ using ForceLoop = void (*)(Tissue<Dim>&, PairTerms<Dim>&, SlipAdvance);
 
 /// The instance with exactly the terms that exist; chosen once, when the scene is built.
 template <int Dim>
-ForceLoop<Dim> choose_force_loop(const PairTerms<Dim>& terms);
+ForceLoop<Dim> choose_force_loop(const PairTerms<Dim>& terms, bool grows);
 
 }  // namespace rootsoil

@@ -5,7 +5,6 @@
 #include <cmath>
 
 namespace rootsoil {
-
 template <int Dim>
 PairTerms<Dim> make_pair_terms(ParticleStore<Dim>& cells, double E_axial_MPa, std::optional<double> non_affine_damping,
                                double non_affine_stiffness, double artificial_viscosity) {
@@ -14,6 +13,7 @@ PairTerms<Dim> make_pair_terms(ParticleStore<Dim>& cells, double E_axial_MPa, st
     terms.non_affine.emplace(NonAffineControl<Dim>{
         *non_affine_damping,
         non_affine_stiffness * E_axial_MPa,
+        {},
         {},
         &cells.template declare<Vec<Dim>>({"start_position", "mm", "at the start of the window", Storage::scratch},
                                          on_division::recomputed<Dim, Vec<Dim>>),
@@ -30,13 +30,17 @@ PairTerms<Dim> make_pair_terms(ParticleStore<Dim>& cells, double E_axial_MPa, st
 }
 
 template <int Dim>
-void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, double window_h, PairTerms<Dim>& terms) {
+void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, PairTerms<Dim>& terms) {
   if (!terms.any()) return;
   const auto& cells = tissue.cells;
   const auto& pairs = tissue.pairs.pairs;
   terms.weight.resize(pairs.size());
   std::vector<Vec<Dim>> slip;
-  if (terms.non_affine) slip.assign(pairs.size(), Vec<Dim>::Zero());
+  const auto* const softening = tissue.material.softening;
+  if (terms.non_affine) {
+    slip.assign(pairs.size(), Vec<Dim>::Zero());
+    if (softening) terms.non_affine->retention.resize(pairs.size());
+  }
 
 #pragma omp parallel for schedule(static)
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -46,6 +50,10 @@ void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, do
     terms.weight[k] = cells.volume[i] * cells.volume[j] * tissue.kernel[k] / (r2 + 0.3 * std::pow(smaller, 2.0 / Dim));
 
     if (!terms.non_affine) continue;
+    if (softening) {
+      const double rate = slip_creep_ratio * 0.5 * ((*softening)[i] + (*softening)[j]) / tissue.material.rho0_ug_mm3;
+      terms.non_affine->retention[k] = 1.0 / (1.0 + tissue.step_h * rate);
+    }
     std::int64_t a = tissue.window_index[i], b = tissue.window_index[j];
     if (a < 0 || b < 0) continue;  // a new cell has no history
     const double sign = a < b ? 1.0 : -1.0;
@@ -54,20 +62,15 @@ void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, do
     const auto last = old_pairs.pairs.begin() + old_pairs.row[a + 1];
     const auto found = std::lower_bound(first, last, b, [](const Pair& p, std::int64_t key) { return p.j < key; });
     if (found == last || found->j != b) continue;
-    double relaxation = 0.0;
-    if (tissue.material.softening) {
-      const auto& lambda = *tissue.material.softening;
-      relaxation = window_h * 0.5 * (lambda[i] + lambda[j]) / tissue.material.rho0_ug_mm3;
-    }
     const Mat<Dim> turn = cells.frame[i] * (*terms.non_affine->start_frame)[i].transpose();
-    slip[k] = sign * std::exp(-relaxation) * (turn * terms.non_affine->slip_mm[found - old_pairs.pairs.begin()]);
+    slip[k] = sign * (turn * terms.non_affine->slip_mm[found - old_pairs.pairs.begin()]);
   }
   if (terms.non_affine) terms.non_affine->slip_mm.swap(slip);
 }
 
 template PairTerms<2> make_pair_terms<2>(ParticleStore<2>&, double, std::optional<double>, double, double);
 template PairTerms<3> make_pair_terms<3>(ParticleStore<3>&, double, std::optional<double>, double, double);
-template void rebuild_pair_terms<2>(const Tissue<2>&, const PairList&, double, PairTerms<2>&);
-template void rebuild_pair_terms<3>(const Tissue<3>&, const PairList&, double, PairTerms<3>&);
+template void rebuild_pair_terms<2>(const Tissue<2>&, const PairList&, PairTerms<2>&);
+template void rebuild_pair_terms<3>(const Tissue<3>&, const PairList&, PairTerms<3>&);
 
 }  // namespace rootsoil

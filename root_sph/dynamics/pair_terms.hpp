@@ -8,6 +8,10 @@
 
 namespace rootsoil {
 
+/// How many times faster than the tissue's stress the slip of the non-affine control creeps where tissue grows
+/// (docs/decisions/0009).
+inline constexpr double slip_creep_ratio = 40.0;
+
 /// Resistance against pair motions that no velocity gradient can see (odd-even modes): the pair velocity minus
 /// its affine part is damped, and its integral e is resisted by a small elastic penalty. docs/physics.md 5.4.
 template <int Dim>
@@ -15,6 +19,7 @@ struct NonAffineControl {
   double damping;                 ///< alpha
   double stiffness_MPa;           ///< fraction of E_axial times E_axial
   std::vector<Vec<Dim>> slip_mm;  ///< e of each pair, from i to j; survives a rebuild for pairs that survive
+  std::vector<double> retention;  ///< what creep leaves of e in a step, of each pair; empty where nothing grows
   Field<Dim, Vec<Dim>>* start_position;  ///< mm, at the window's start
   Field<Dim, Mat<Dim>>* start_frame;
 };
@@ -40,10 +45,11 @@ template <int Dim>
 PairTerms<Dim> make_pair_terms(ParticleStore<Dim>& cells, double E_axial_MPa, std::optional<double> non_affine_damping,
                                double non_affine_stiffness, double artificial_viscosity);
 
-/// Weights for new pairs; e moves from the old pairs to the new ones, turned with the tissue since the old
-/// window's start and relaxed by growth, e exp(-window lambda/rho0): kept whole, an irregular growing tip
-/// bloats; forgotten, an odd-even displacement freezes in (both measured, docs/physics.md 5.4).
+/// Weights for new pairs; e moves from the old pairs to the new ones, turned with the tissue since the old window's
+/// start: forgotten, an odd-even displacement freezes in. Where tissue grows it creeps away, faster than the tissue's
+/// own stress, de/dt = -creep lambda/rho0 e: kept, an irregular growing tip bloats, and what the operators cannot
+/// resolve of a growth profile stays behind as stress (measured, docs/decisions/0009).
 template <int Dim>
-void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, double window_h, PairTerms<Dim>& terms);
+void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, PairTerms<Dim>& terms);
 
 }  // namespace rootsoil

@@ -13,7 +13,7 @@ namespace rootsoil {
 template <int Dim>
 void Solver<Dim>::prepare() {
   update_material_ = choose_material_loop<Dim>(tissue_.material);
-  add_forces_ = choose_force_loop<Dim>(terms_);
+  add_forces_ = choose_force_loop<Dim>(terms_, tissue_.material.softening != nullptr);
   // no window before the first one
   for (std::int64_t& index : tissue_.window_index.values()) index = -1;
 }
@@ -44,7 +44,8 @@ void Solver<Dim>::begin_window() {
     gradient_report_ = build_gradients<Dim>(cells.position.values(), metrics, cells.volume.values(), tissue_.pairs,
                                             options_.gradient, tissue_.gradients, tissue_.kernel);
   });
-  clock_.measure("pair terms", [&] { rebuild_pair_terms<Dim>(tissue_, old_pairs, last_window_h_, terms_); });
+  Hooks<Dim>::run(hooks_.operators, clock_, tissue_);
+  clock_.measure("pair terms", [&] { rebuild_pair_terms<Dim>(tissue_, old_pairs, terms_); });
   std::vector<Vec<Dim>> stiffness;
   clock_.measure("stability bound", [&] { stiffness = bound_stiffness<Dim>(tissue_, terms_); });
   Hooks<Dim>::template run<std::vector<Vec<Dim>>&>(hooks_.stiffness, clock_, tissue_, stiffness);
@@ -155,7 +156,6 @@ void Solver<Dim>::advance_window(int steps) {
     tissue_.time_h = static_cast<double>(steps_) * tissue_.step_h;
   }
   end_window();
-  last_window_h_ = window_h_;
 }
 
 /// A cell that inverts, tears away or is no longer a number ends the run: nothing is deleted or repaired.
@@ -184,7 +184,6 @@ template <int Dim>
 void Solver<Dim>::save(std::map<std::string, std::vector<double>>& reals,
                        std::map<std::string, std::vector<std::int64_t>>& integers) const {
   reals["solver/axis"] = axis_.save();
-  reals["solver/last_window_h"] = {last_window_h_};
   integers["solver/counters"] = {steps_, tissue_.next_cell_id};
   if (!terms_.non_affine) return;
   std::vector<std::int64_t>& index = integers["solver/slip_pairs"];
@@ -205,7 +204,6 @@ template <int Dim>
 void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& reals,
                           const std::map<std::string, std::vector<std::int64_t>>& integers) {
   axis_.restore(reals.at("solver/axis"));
-  last_window_h_ = reals.at("solver/last_window_h").at(0);
   steps_ = integers.at("solver/counters").at(0);
   tissue_.next_cell_id = integers.at("solver/counters").at(1);
   tissue_.time_h = static_cast<double>(steps_) * tissue_.step_h;

@@ -79,7 +79,6 @@ class Solver {
   ForceLoop<Dim> add_forces_ = nullptr;
   GradientReport gradient_report_;
   double window_h_ = 0.0;
-  double last_window_h_ = 0.0;
   std::int64_t steps_ = 0;
 };
 

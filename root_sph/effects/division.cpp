@@ -19,13 +19,17 @@ LongestAxis<Dim> longest_axis(const Mat<Dim>& shape) {
 
 template <int Dim>
 void even_out_spacing(Solver<Dim>& solver) {
-  constexpr double rate_per_h = 10.0;    // fast against a generation, slow against a window
+  constexpr double rate_over_strain_rate = 25.0;  // fast against a generation; mature tissue is left alone
   constexpr double adjacent = 1.3;       // ellipsoids this near to touching are neighbours in a file; diagonals are at 1.41
   constexpr double along = 0.8;          // cosine to the root axis
   Tissue<Dim>& tissue = solver.tissue();
   auto& cells = tissue.cells;
-  const double share = 0.5 * std::min(0.2, rate_per_h * solver.window_h());
-  std::vector<double> shift(cells.size(), 0.0);
+  std::vector<double> share(cells.size()), shift(cells.size(), 0.0);
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double rate = rate_over_strain_rate * std::max(0.0, solver.axis().strain_rate_per_h(cells.distance_to_tip[i]));
+    share[i] = 0.25 * std::min(0.2, rate * solver.window_h());
+  }
   for_each_block(tissue.pairs, [&](const PairBlock& block) {
     for (std::int64_t k = block.first_pair; k < block.last_pair; ++k) {
       const auto [i, j] = tissue.pairs.pairs[k];
@@ -39,8 +43,9 @@ void even_out_spacing(Solver<Dim>& solver) {
       if (std::abs(cosine) < along) continue;
       const double half_i = 1.0 / std::sqrt(n.dot(cells.shape[i] * n)), half_j = 1.0 / std::sqrt(n.dot(cells.shape[j] * n));
       const double gap = (length - half_i - half_j) * (cosine > 0.0 ? 1.0 : -1.0);
-      shift[i] += share * gap;
-      shift[j] -= share * gap;
+      const double moved = (share[i] + share[j]) * gap;
+      shift[i] += moved;
+      shift[j] -= moved;
     }
   });
 #pragma omp parallel for schedule(static)

@@ -9,6 +9,10 @@
 
 namespace rootsoil {
 
+/// A cell's softening is the gradient of the profile's integral along the root, taken with the operators that measure
+/// its strain rate: lambda_i = -axis . sum_j (Lambda_j - Lambda_i) g_ij. A cell as long as the profile is steep cannot
+/// follow its value at one point: the rate that its neighbours allow is an average, and the difference would stay
+/// behind as stress where the growth zone ends (docs/decisions/0010). Equal to lambda(s) to second order.
 template <int Dim>
 class GrowthEffect final : public Effect<Dim> {
  public:

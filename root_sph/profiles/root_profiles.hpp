@@ -2,6 +2,8 @@
 // How properties vary along the root: the paper's Eq. 6, as functions of s, the distance from the tip.
 #pragma once
 
+#include <vector>
+
 namespace rootsoil {
 
 /// E_R(s) = E_A + (E_H - E_A) (c_e + (1 - c_e)/(1 + exp(-s_e (s - x_e)))), MPa. Eq. 6, first.
@@ -19,6 +21,18 @@ struct SofteningProfile {
   double mature_at_mm = -1.0;  ///< negative: no cut-off
   double mature_width_mm = 0.0;
   double operator()(double s_mm) const;
+};
+
+/// Integral of lambda(s) from the tip, ug/(mm^2 h): a table with Simpson's rule between the nodes and cubic Hermite
+/// interpolation, so fourth order in the step. Constant below 0 and beyond `length_mm`.
+class SofteningIntegral {
+ public:
+  SofteningIntegral(const SofteningProfile& softening, double length_mm, double step_mm);
+  double operator()(double s_mm) const;
+
+ private:
+  double step_mm_;
+  std::vector<double> slope_, value_;
 };
 
 /// Division threshold of the longest axis, l(s) = l0 (c_d + s_d (s - x_d)^2), mm; constant beyond a distance.

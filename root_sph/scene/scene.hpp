@@ -102,7 +102,7 @@ struct ObstacleSection {
 /// Damps and resists pair motions that no velocity gradient can see (docs/physics.md 5.4).
 struct NonAffineControlSection {
   double damping = 0.5;     ///< alpha
-  double stiffness = 0.05;  ///< fraction of E_axial
+  double stiffness = 2.0;  ///< times E_axial (docs/decisions/0009)
 };
 
 /// A point of the tissue followed over time, or a bin at a distance from the tip.

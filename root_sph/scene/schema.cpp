@@ -405,7 +405,7 @@ std::vector<SectionSpec> make_schema() {
                           "Damps and resists pair motions that no velocity gradient can see.",
                           [](auto& s) { return &s.non_affine_control; }, {
     key(&Nc::damping, "damping", "-", at_least(0), "Damping alpha.", "docs/physics.md 5.4"),
-    key(&Nc::stiffness, "stiffness", "-", at_least(0), "Elastic penalty, fraction of E_A.", "docs/physics.md 5.4"),
+    key(&Nc::stiffness, "stiffness", "-", at_least(0), "Elastic penalty, times E_A.", "docs/decisions/0009"),
   }));
 
   using Ob = ObstacleSection;

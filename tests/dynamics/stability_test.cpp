@@ -58,7 +58,7 @@ struct SmallBlock {
       (*terms.non_affine->start_frame)[i] = tissue.cells.frame[i];
     }
     test::build_operators<Dim>(tissue, 1.5, gradient);
-    rebuild_pair_terms<Dim>(tissue, {}, 0.0, terms);
+    rebuild_pair_terms<Dim>(tissue, {}, terms);
   }
 
   /// Column by column: accelerations (times -1, over `amount`) in answer to one cell moving with `speed` along one
@@ -97,7 +97,7 @@ struct SmallBlock {
     const Eigen::MatrixXd m = assemble(
         [this] {
           choose_material_loop<Dim>(tissue.material)(tissue, dt);
-          choose_force_loop<Dim>(terms)(tissue, terms, {dt, 0.0});
+          choose_force_loop<Dim>(terms, false)(tissue, terms, {dt, 0.0});
         },
         1e-9 / dt, 1e-9);
     if (terms.damping) terms.damping->values() = damping;
@@ -109,7 +109,7 @@ struct SmallBlock {
     return assemble(
         [this] {
           update_nominal_forces<Dim>(tissue);
-          choose_force_loop<Dim>(terms)(tissue, terms, {0.0, 0.0});
+          choose_force_loop<Dim>(terms, false)(tissue, terms, {0.0, 0.0});
         },
         1.0, 1.0);
   }

@@ -143,7 +143,8 @@ StressScatter stress_scatter(const Tissue<Dim>& tissue, double from_mm, double t
 }
 
 /// Radius at distances [from, to) of the tip, from the second moment of the volumes about the root's axis there,
-/// across the material frames, so that a bent root has the same: 2D y^2 -> R^2/3, 3D y^2 + z^2 -> R^2/2.
+/// across the material frames, so that a bent root has the same: 2D y^2 -> R^2/3, 3D y^2 + z^2 -> R^2/2. Weights fade
+/// to 0 at both ends: a long cell is not half in.
 template <int Dim>
 double radius_mm(const Tissue<Dim>& tissue, double from_mm, double to_mm) {
   const auto& cells = tissue.cells;
@@ -152,17 +153,20 @@ double radius_mm(const Tissue<Dim>& tissue, double from_mm, double to_mm) {
   const auto inside = [&](std::size_t i) {
     return !cells.clamped[i] && cells.distance_to_tip[i] >= from_mm && cells.distance_to_tip[i] < to_mm;
   };
+  const auto weight = [&](std::size_t i) {
+    return cells.volume[i] * std::pow(std::sin(std::numbers::pi * (cells.distance_to_tip[i] - from_mm) / (to_mm - from_mm)), 2);
+  };
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!inside(i)) continue;
-    volume += cells.volume[i];
-    centre += cells.volume[i] * cells.position[i];
+    volume += weight(i);
+    centre += weight(i) * cells.position[i];
   }
   centre /= volume;
   double moment = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!inside(i)) continue;
     const Vec<Dim> r = cells.frame[i].transpose() * (cells.position[i] - centre);
-    moment += cells.volume[i] * r.template tail<Dim - 1>().squaredNorm();
+    moment += weight(i) * r.template tail<Dim - 1>().squaredNorm();
   }
   return std::sqrt((Dim == 2 ? 3.0 : 2.0) * moment / volume);
 }
