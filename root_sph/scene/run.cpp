@@ -11,6 +11,7 @@
 #include "root_sph/scene/picture.hpp"
 #include "root_sph/scene/progress.hpp"
 #include "root_sph/scene/recorder.hpp"
+#include "root_sph/scene/resume.hpp"
 #include "root_sph/scene/run_log.hpp"
 #include "root_sph/scene/write_scene.hpp"
 
@@ -48,17 +49,6 @@ class SignalGuard {
   void (*old_terminate_)(int);
 };
 
-/// Identifies the physics of a scene: what may change on resume is left out.
-std::string scene_digest(Scene scene) {
-  scene.scene.duration_h = 1.0;
-  scene.output.picture = false;
-  scene.output.checkpoint_every_h = 1.0;
-  scene.output.every_h = 1.0;
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
-  for (const unsigned char c : resolved_toml(scene)) hash = (hash ^ c) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", hash);
-}
-
 double peak_memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -69,13 +59,15 @@ double peak_memory_mb() {
 template <int Dim>
 class Run {
  public:
-  Run(const Scene& scene, const RunOptions& options, const RunFolder& folder);
+  /// \param checkpoint of this scene, to go on from
+  Run(const Scene& scene, const RunOptions& options, const RunFolder& folder,
+      const std::optional<Checkpoint>& checkpoint);
   ExitStatus go();
 
  private:
   void record();
   void write_checkpoint_file();
-  void resume_from_checkpoint();
+  void resume_from(const Checkpoint& checkpoint);
   void write_summary(const std::string& status) const;
   std::int64_t steps_per(double interval_h) const {
     return std::max<std::int64_t>(1, std::llround(interval_h / model().solver.tissue().step_h));
@@ -86,7 +78,7 @@ class Run {
     return static_cast<std::int64_t>(model().solver.tissue().cells.size()) - cells_start_;
   }
 
-  Scene scene_;  ///< with the step that is used
+  Scene scene_;
   const RunOptions& options_;
   std::filesystem::path folder_;
   BuiltModel<Dim> built_;
@@ -110,21 +102,21 @@ class Run {
 };
 
 template <int Dim>
-Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& folder)
+Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& folder,
+              const std::optional<Checkpoint>& checkpoint)
     : scene_(scene),
       options_(options),
       folder_(folder.path()),
       built_(build_model<Dim>(scene)),
       log_(folder.path() / "run.log", options.quiet) {
   const Tissue<Dim>& tissue = model().solver.tissue();
-  scene_.numerics.step_h = tissue.step_h;
   cells_start_ = static_cast<std::int64_t>(tissue.cells.size());
   last_row_ = {0.0, model().solver.axis().length_mm()};
-  make_frame<Dim>(model(), scene_.output.fields);  // refuses unknown fields before anything is written
+  refuse_unknown_fields<Dim>(model(), scene_);  // before anything is written
 
   std::optional<double> continue_h;
-  if (options.resume) {
-    resume_from_checkpoint();
+  if (checkpoint) {
+    resume_from(*checkpoint);
     if (model().solver.steps() > 0) continue_h = tissue.time_h;  // at 0 everything is written once more
   } else {
     write_checkpoint_file();  // first of all: killed at any later instant, --resume goes on
@@ -184,20 +176,7 @@ void Run<Dim>::write_checkpoint_file() {
 }
 
 template <int Dim>
-void Run<Dim>::resume_from_checkpoint() {
-  const std::filesystem::path path = folder_ / "checkpoint.h5";
-  const Checkpoint checkpoint = read_checkpoint(path);
-  if (checkpoint.scene_digest != scene_digest(scene_) || checkpoint.dimension != Dim) {
-    throw InputError({scene_.file, 0, "--resume", "the checkpoint in this folder belongs to another scene",
-                      path.string(),
-                      "the scene that began this run, with its --accuracy and --set; only duration_h and the times in "
-                      "[output] may differ, where the step stays the same",
-                      "take " + (folder_ / "scene.toml").string() + ", or another --out"});
-  }
-  if (checkpoint.program_version != ROOTSOIL_VERSION) {
-    throw InputError({path.string(), 0, "--resume", "the checkpoint was written by another version of the program",
-                      checkpoint.program_version, ROOTSOIL_VERSION, "use that version, or start anew in another --out"});
-  }
+void Run<Dim>::resume_from(const Checkpoint& checkpoint) {
   restore_cells<Dim>(checkpoint, model().solver.tissue().cells);
   model().solver.restore(checkpoint.reals, checkpoint.integers);
   for (const auto& effect : model().effects) effect->restore(checkpoint.reals);
@@ -326,10 +305,20 @@ ExitStatus Run<Dim>::go() {
 }
 
 template <int Dim>
-int run_in_folder(const Scene& scene, const RunOptions& options) {
+int run_in_folder(Scene scene, const RunOptions& options) {
   refuse_unstable_law<Dim>(scene);  // before the folder is touched
   const RunFolder folder = claim_run_folder(options.out, options.resume);
-  return static_cast<int>(Run<Dim>(scene, options, folder).go());
+  std::optional<Checkpoint> checkpoint;
+  if (options.resume) {
+    checkpoint = read_checkpoint(folder.path() / "checkpoint.h5");
+    // a step that the program chose stays, even where a longer duration would suggest another
+    if (!scene.numerics.step_h) {
+      if (const auto was = earlier_scene(folder.path())) scene.numerics.step_h = was->numerics.step_h;
+    }
+  }
+  scene.numerics.step_h = choose_step_h<Dim>(scene);
+  if (checkpoint) refuse_foreign_checkpoint(scene, *checkpoint, folder.path());
+  return static_cast<int>(Run<Dim>(scene, options, folder, checkpoint).go());
 }
 
 }  // namespace
