@@ -9,6 +9,7 @@
 #include "root_sph/scene/commands.hpp"
 #include "root_sph/scene/model.hpp"
 #include "root_sph/scene/picture.hpp"
+#include "root_sph/scene/presets.hpp"
 #include "root_sph/scene/progress.hpp"
 #include "root_sph/scene/recorder.hpp"
 #include "root_sph/scene/resume.hpp"
@@ -93,6 +94,7 @@ class Run {
 
   std::int64_t cells_start_ = 0;
   LengthMark last_row_;
+  double inertia_error_ = 0.0;  ///< at the latest row
   double inertia_error_max_ = 0.0, momentum_residual_max_ = 0.0;
   std::int64_t degenerate_max_ = 0;
   double pair_steps_ = 0.0;
@@ -147,7 +149,8 @@ void Run<Dim>::record() {
   const HistoryRow row = make_history_row<Dim>(model(), last_row_, divisions());
   history_->append(row.values);
   last_row_ = {tissue.time_h, row.length_mm};
-  inertia_error_max_ = std::max(inertia_error_max_, row.inertia_error);
+  inertia_error_ = row.inertia_error;
+  inertia_error_max_ = std::max(inertia_error_max_, inertia_error_);
   momentum_residual_max_ = std::max(momentum_residual_max_, row.momentum_residual);
   for (const ProbeFile& p : probe_files_) {
     std::vector<double> values = p.probe->read(tissue).values();
@@ -170,7 +173,7 @@ void Run<Dim>::write_checkpoint_file() {
   for (const auto& effect : model().effects) effect->save(checkpoint.reals);
   checkpoint.integers["run/cells_start"] = {cells_start_};
   checkpoint.reals["run/last_row"] = {last_row_.time_h, last_row_.length_mm};
-  checkpoint.reals["run/worst"] = {inertia_error_max_, momentum_residual_max_};
+  checkpoint.reals["run/worst"] = {inertia_error_max_, momentum_residual_max_, inertia_error_};
   write_checkpoint(folder_ / "checkpoint.h5", checkpoint);
   checkpoint_h_ = tissue.time_h;
 }
@@ -184,6 +187,7 @@ void Run<Dim>::resume_from(const Checkpoint& checkpoint) {
   last_row_ = {checkpoint.reals.at("run/last_row").at(0), checkpoint.reals.at("run/last_row").at(1)};
   inertia_error_max_ = checkpoint.reals.at("run/worst").at(0);
   momentum_residual_max_ = checkpoint.reals.at("run/worst").at(1);
+  inertia_error_ = checkpoint.reals.at("run/worst").at(2);
   checkpoint_h_ = checkpoint.time_h;
 }
 
@@ -220,7 +224,9 @@ void Run<Dim>::write_summary(const std::string& status) const {
       {"threads", omp_get_max_threads()},
       {"dt_h", {{"min", tissue.step_h}, {"mean", tissue.step_h}, {"max", tissue.step_h}}},
       {"accuracy", scene_.numerics.accuracy},
+      {"inertia_error", inertia_error_},
       {"inertia_error_max", inertia_error_max_},
+      {"discretisation_error", discretisation_error(scene_.numerics.accuracy)},
       {"momentum_residual", momentum_residual_max_},
       {"degenerate_cells_max", degenerate_max_},
       {"cell_file_volume_scale", built_.initial.volume_scale},
@@ -298,8 +304,11 @@ ExitStatus Run<Dim>::go() {
   }
   series_->finish();
   write_summary("done");
-  log_.info("done: {} cells after {} divisions, root {:.4f} mm, inertia error at most {:.2g} of p, {:.1f} s, {:.0f} MB",
-            tissue.cells.size(), divisions(), solver.axis().length_mm(), inertia_error_max_, wall_s_, peak_memory_mb());
+  log_.info("done: {} cells after {} divisions, root {:.4f} mm, {:.1f} s, {:.0f} MB", tissue.cells.size(), divisions(),
+            solver.axis().length_mm(), wall_s_, peak_memory_mb());
+  log_.info("inertia error {:.2g} % of p at the end, at most {:.2g} %; discretisation error about {:.2g} % ({})",
+            100.0 * inertia_error_, 100.0 * inertia_error_max_,
+            100.0 * discretisation_error(scene_.numerics.accuracy), scene_.numerics.accuracy);
   if (scene_.output.picture) log_.info("{}", draw_picture(folder_));
   return ExitStatus::done;
 }

@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "root_sph/core/errors.hpp"
@@ -72,6 +73,15 @@ std::unique_ptr<Solver<Dim>> growing_root(Stepper stepper, bool with_cells) {
   });
   solver->prepare();
   return solver;
+}
+
+TEST(SolverTime, IsTheShortestDecimalOfTheStepCount) {
+  EXPECT_NE(3 * 0.1, 0.3);
+  EXPECT_EQ(step_time_h(3, 0.1), 0.3);
+  for (std::int64_t tenth = 1; tenth <= 1000; ++tenth) {
+    EXPECT_EQ(step_time_h(300 * tenth, 0.1 / 300.0), static_cast<double>(tenth) / 10.0);
+  }
+  EXPECT_LT(step_time_h(99'999, 1e-3), step_time_h(100'000, 1e-3));
 }
 
 template <class T>
@@ -205,7 +215,18 @@ TYPED_TEST(SolverErrors, StopWhenACellIsNoLongerANumber) {
   const auto solver = growing_root<TypeParam::value>(Stepper::symplectic, true);
   solver->advance_window(5);
   solver->tissue().cells.stress[40][0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(solver->advance_window(5), UnphysicalError);
+  try {
+    solver->advance_window(5);
+    FAIL() << "the run went on";
+  } catch (const UnphysicalError& error) {
+    // every coordinate of the cell is named
+    const std::string text = error.what();
+    const std::size_t from = text.find("(position "), to = text.find(" mm, distance");
+    ASSERT_LT(from, to) << text;
+    EXPECT_EQ(std::count(text.begin() + static_cast<std::ptrdiff_t>(from), text.begin() + static_cast<std::ptrdiff_t>(to), ','),
+              TypeParam::value - 1)
+        << text;
+  }
 }
 
 TYPED_TEST(SolverErrors, StopWhenACellCollapsesWithinAWindow) {
