@@ -368,7 +368,7 @@ def test_unknown_field(program: Program):
     """A field that the scene does not have is refused before anything of a run is written."""
     scene = program.scene(SMALL + 'fields = ["softening"]\n')
     done = program("run", scene, "--out", "out")
-    assert_one_message(done, BAD_INPUT, "scene.toml:16: output.fields: ", "given:   softening", "allowed: ")
+    assert_one_message(done, BAD_INPUT, "scene.toml:15: output.fields: ", "given:   softening", "allowed: ")
     assert program("run", program.scene(SMALL), "--out", "out").status == 0
 
 
