@@ -60,9 +60,8 @@ Eigen::Matrix<double, Dim, basis_size<Dim>> quadratic_fit(
     const Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>& moment, double& trust) {
   constexpr double smallest_pivot = 1e-3;
   const Basis<Dim> scale = moment.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  // a size that only the run knows keeps Eigen from unrolling the factorisation, which took GCC half a minute
-  using Scaled = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, basis_size<Dim>, basis_size<Dim>>;
-  const Eigen::LDLT<Scaled> factors(Scaled(scale.asDiagonal() * moment * scale.asDiagonal()));
+  const Eigen::LDLT<Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>> factors(
+      Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>(scale.asDiagonal() * moment * scale.asDiagonal()));
   trust = smooth_step(factors.vectorD().minCoeff(), smallest_pivot, 4.0 * smallest_pivot);
   if (trust <= 0.0) return Eigen::Matrix<double, Dim, basis_size<Dim>>::Zero();
   Eigen::Matrix<double, basis_size<Dim>, Dim> unit = Eigen::Matrix<double, basis_size<Dim>, Dim>::Zero();

@@ -46,14 +46,9 @@ class Random {
 
   template <int Dim>
   Mat<Dim> rotation() {
-    // Gram-Schmidt on a random matrix, twice for the last digits (Eigen's Householder takes GCC 15 s to compile)
-    Mat<Dim> r = matrix<Mat<Dim>>();
-    for (int pass = 0; pass < 2; ++pass) {
-      for (int a = 0; a < Dim; ++a) {
-        for (int b = 0; b < a; ++b) r.col(a) -= r.col(b).dot(r.col(a)) * r.col(b);
-        r.col(a).normalize();
-      }
-    }
+    // Gram-Schmidt on a random matrix; columns swapped in sign until it is right-handed
+    const Mat<Dim> q = Eigen::HouseholderQR<Mat<Dim>>(matrix<Mat<Dim>>()).householderQ();
+    Mat<Dim> r = q;
     if (r.determinant() < 0.0) r.col(0) = -r.col(0);
     return r;
   }
