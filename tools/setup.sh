@@ -22,7 +22,6 @@ libfmt-dev           formats messages
 libspdlog-dev        run.log
 nlohmann-json3-dev   summary.json
 libgtest-dev         tests
-libgmock-dev         tests: matchers
 libbenchmark-dev     benchmarks
 python3-h5py         tools: read run.h5
 python3-numpy        tools: arithmetic

@@ -14,9 +14,14 @@ namespace rootsoil {
 template <int Dim>
 using MaterialLoop = void (*)(Tissue<Dim>&, double dt_h);
 
+enum class MaterialStep {
+  advance,  ///< as above
+  predict,  ///< only nominal_force, as it will be; the cells stay as they are
+};
+
 /// The instance for the law and the columns that exist.
 template <int Dim>
-MaterialLoop<Dim> choose_material_loop(const Material<Dim>& material);
+MaterialLoop<Dim> choose_material_loop(const Material<Dim>& material, MaterialStep step = MaterialStep::advance);
 
 /// nominal_force from the stresses as they are: V R sigma R^T F^-T - p V F^-T.
 template <int Dim>

@@ -3,6 +3,7 @@
 #include "root_sph/core/errors.hpp"
 #include "root_sph/scene/commands.hpp"
 #include "root_sph/scene/model.hpp"
+#include "root_sph/scene/presets.hpp"
 #include "root_sph/tissue/hyperbolicity.hpp"
 
 #include <fmt/format.h>
@@ -96,6 +97,8 @@ Json examine(const Scene& scene) {
           {"step_h", tissue.step_h},
           {"steps", steps},
           {"stable_step", "any: inertia follows the step"},
+          {"inertia_error_at_start", inertia_error<Dim>(tissue, solver.axis(), solver.window_h())},
+          {"discretisation_error", discretisation_error(scene.numerics.accuracy)},
           {"closed_form_tip_speed_mm_h", theory.tip_speed_mm_h},
           {"closed_form_peak_strain_rate_per_h", theory.peak_rate_per_h},
           {"cells_per_step_at_the_tip", theory.tip_speed_mm_h * tissue.step_h / built.initial.cell_size_mm},
@@ -120,6 +123,13 @@ void print(const Json& found) {
              found["pairs_per_cell"].get<double>());
   fmt::print("step: {:.4g} h, {:.0f} steps ({}); stable at any step, the step buys accuracy\n",
              found["step_h"].get<double>(), found["steps"].get<double>(), found["accuracy"].get<std::string>());
+  fmt::print("discretisation error about {:.2g} %; inertia error ", 100.0 * found["discretisation_error"].get<double>());
+  if (found["closed_form_tip_speed_mm_h"].get<double>() > 0.0) {
+    fmt::print("{:.2g} % of p at the start, every run measures its own\n",
+               100.0 * found["inertia_error_at_start"].get<double>());
+  } else {
+    fmt::print("fades as the root settles, every run measures it\n");
+  }
   fmt::print("hyperbolic: {} (smallest acoustic modulus {:.4g} MPa)\n", found["hyperbolic"].get<bool>() ? "yes" : "no",
              found["smallest_acoustic_modulus_MPa"].get<double>());
   if (found["closed_form_tip_speed_mm_h"].get<double>() > 0.0) {

@@ -123,14 +123,14 @@ void refuse_unstable_law(const Scene& scene) {
     const ElasticConstants c = constants_at<Dim>(scene, s, p);
     const AcousticFinding finding = scan_acoustic_tensor<Dim>(pressure_deviator_tangent<Dim>(c));
     if (finding.hyperbolic) continue;
-    throw InputError(
-        {scene.file, 0, "tissue.law",
-         fmt::format("the law is not hyperbolic {:.3g} mm from the tip: waves at {:.0f} degrees from the axis grow by "
-                     "themselves (acoustic tensor: smallest real part {:.4g} MPa, imaginary part {:.4g} MPa)",
-                     s, finding.angle_deg, finding.smallest_real_MPa, finding.largest_imaginary_MPa),
-         fmt::format("pressure_deviator with E_R/E_A = {:.3g}, G = {:.4g} MPa", c.E_radial_MPa / c.E_axial_MPa, c.G_MPa),
-         "E_R/E_A below about 4, or the law elastic_growth",
-         "use law = \"elastic_growth\", or set scene.allow_unstable = true to see what happens"});
+    scene.origins.fail(
+        "tissue.law",
+        fmt::format("the law is not hyperbolic {:.3g} mm from the tip: waves at {:.0f} degrees from the axis grow by "
+                    "themselves (acoustic tensor: smallest real part {:.4g} MPa, imaginary part {:.4g} MPa)",
+                    s, finding.angle_deg, finding.smallest_real_MPa, finding.largest_imaginary_MPa),
+        fmt::format("pressure_deviator with E_R/E_A = {:.3g}, G = {:.4g} MPa", c.E_radial_MPa / c.E_axial_MPa, c.G_MPa),
+        "E_R/E_A below about 4, or the law elastic_growth",
+        "use law = \"elastic_growth\", or set scene.allow_unstable = true to see what happens");
   }
 }
 

@@ -11,13 +11,21 @@ struct Preset {
   double eta;
   int window_steps;
   const char* gradient;
+  double discretisation_error;
 };
 
 constexpr Preset presets[] = {
-    {"fast", 1.5, 20, "quadratic_at_surface"},
-    {"balanced", 1.5, 20, "quadratic_at_surface"},
-    {"reference", 1.5, 20, "quadratic_at_surface"},
+    {"fast", 1.5, 20, "quadratic_at_surface", 0.0058},
+    {"balanced", 1.5, 20, "quadratic_at_surface", 0.0013},
+    {"reference", 1.5, 20, "quadratic_at_surface", 0.0007},
 };
+
+const Preset& find_preset(std::string_view accuracy) {
+  for (const Preset& p : presets) {
+    if (accuracy == p.name) return p;
+  }
+  assertion_failed("there is such a preset", __FILE__, __LINE__);
+}
 
 }  // namespace
 
@@ -28,17 +36,15 @@ std::vector<std::string> preset_names() {
 }
 
 NumericsSection preset(std::string_view accuracy) {
-  for (const Preset& p : presets) {
-    if (accuracy != p.name) continue;
-    NumericsSection numerics;
-    numerics.accuracy = p.name;
-    numerics.eta = p.eta;
-    numerics.window_steps = p.window_steps;
-    numerics.gradient = p.gradient;
-    return numerics;
-  }
-  ROOTSOIL_ASSERT(false && "unknown preset");
-  return {};
+  const Preset& p = find_preset(accuracy);
+  NumericsSection numerics;
+  numerics.accuracy = p.name;
+  numerics.eta = p.eta;
+  numerics.window_steps = p.window_steps;
+  numerics.gradient = p.gradient;
+  return numerics;
 }
+
+double discretisation_error(std::string_view accuracy) { return find_preset(accuracy).discretisation_error; }
 
 }  // namespace rootsoil

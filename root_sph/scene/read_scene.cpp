@@ -115,6 +115,7 @@ class Reader {
     for (const SectionSpec& section : schema()) read_section(section);
     check_response_duplicates();
     validate_and_complete(scene_, origins_);
+    scene_.origins = std::move(origins_);
     return std::move(scene_);
   }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/scene/recorder.hpp"
 
-#include "root_sph/core/errors.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -67,13 +65,6 @@ Vec<Dim> axis_lengths(const Mat<Dim>& shape) {
 
 void keep_wanted(std::vector<FrameColumn>& columns, const std::vector<std::string>& wanted) {
   if (wanted.empty()) return;
-  std::set<std::string> known;
-  for (const FrameColumn& c : columns) known.insert(c.name);
-  for (const std::string& name : wanted) {
-    if (known.contains(name)) continue;
-    throw InputError({"", 0, "output.fields", "there is no such field in this scene", name,
-                      fmt::format("{}", fmt::join(known, ", ")), "take it out, or leave fields empty to write all"});
-  }
   std::erase_if(columns, [&](const FrameColumn& c) {
     return c.name != "position" && c.name != "cell_id" && std::find(wanted.begin(), wanted.end(), c.name) == wanted.end();
   });
@@ -125,6 +116,17 @@ Frame make_frame(const Model<Dim>& model, const std::vector<std::string>& wanted
   for (const auto& effect : model.effects) effect->add_columns(tissue, frame.columns);
   keep_wanted(frame.columns, wanted);
   return frame;
+}
+
+template <int Dim>
+void refuse_unknown_fields(const Model<Dim>& model, const Scene& scene) {
+  std::set<std::string> known;
+  for (const FrameColumn& c : make_frame<Dim>(model, {}).columns) known.insert(c.name);
+  for (const std::string& name : scene.output.fields) {
+    if (known.contains(name)) continue;
+    scene.origins.fail("output.fields", "there is no such field in this scene", name,
+                       fmt::format("{}", fmt::join(known, ", ")), "take it out, or leave fields empty to write all");
+  }
 }
 
 std::vector<std::string> history_columns() {
@@ -190,6 +192,8 @@ HistoryRow make_history_row(const Model<Dim>& model, const LengthMark& before, s
 
 template Frame make_frame<2>(const Model<2>&, const std::vector<std::string>&);
 template Frame make_frame<3>(const Model<3>&, const std::vector<std::string>&);
+template void refuse_unknown_fields<2>(const Model<2>&, const Scene&);
+template void refuse_unknown_fields<3>(const Model<3>&, const Scene&);
 template HistoryRow make_history_row<2>(const Model<2>&, const LengthMark&, std::int64_t);
 template HistoryRow make_history_row<3>(const Model<3>&, const LengthMark&, std::int64_t);
 

@@ -11,9 +11,12 @@
 namespace rootsoil {
 
 /// All columns of the cells at this time; a non-empty `wanted` keeps those (and position and cell_id).
-/// InputError when it names a column that does not exist in this scene.
 template <int Dim>
 Frame make_frame(const Model<Dim>& model, const std::vector<std::string>& wanted);
+
+/// InputError when output.fields names a column that does not exist in this scene.
+template <int Dim>
+void refuse_unknown_fields(const Model<Dim>& model, const Scene& scene);
 
 std::vector<std::string> history_columns();
 

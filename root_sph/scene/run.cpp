@@ -9,8 +9,10 @@
 #include "root_sph/scene/commands.hpp"
 #include "root_sph/scene/model.hpp"
 #include "root_sph/scene/picture.hpp"
+#include "root_sph/scene/presets.hpp"
 #include "root_sph/scene/progress.hpp"
 #include "root_sph/scene/recorder.hpp"
+#include "root_sph/scene/resume.hpp"
 #include "root_sph/scene/run_log.hpp"
 #include "root_sph/scene/write_scene.hpp"
 
@@ -48,17 +50,6 @@ class SignalGuard {
   void (*old_terminate_)(int);
 };
 
-/// Identifies the physics of a scene: what may change on resume is left out.
-std::string scene_digest(Scene scene) {
-  scene.scene.duration_h = 1.0;
-  scene.output.picture = false;
-  scene.output.checkpoint_every_h = 1.0;
-  scene.output.every_h = 1.0;
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
-  for (const unsigned char c : resolved_toml(scene)) hash = (hash ^ c) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", hash);
-}
-
 double peak_memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -69,13 +60,15 @@ double peak_memory_mb() {
 template <int Dim>
 class Run {
  public:
-  Run(const Scene& scene, const RunOptions& options, const RunFolder& folder);
+  /// \param checkpoint of this scene, to go on from
+  Run(const Scene& scene, const RunOptions& options, const RunFolder& folder,
+      const std::optional<Checkpoint>& checkpoint);
   ExitStatus go();
 
  private:
   void record();
   void write_checkpoint_file();
-  void resume_from_checkpoint();
+  void resume_from(const Checkpoint& checkpoint);
   void write_summary(const std::string& status) const;
   std::int64_t steps_per(double interval_h) const {
     return std::max<std::int64_t>(1, std::llround(interval_h / model().solver.tissue().step_h));
@@ -86,7 +79,7 @@ class Run {
     return static_cast<std::int64_t>(model().solver.tissue().cells.size()) - cells_start_;
   }
 
-  Scene scene_;  ///< with the step that is used
+  Scene scene_;
   const RunOptions& options_;
   std::filesystem::path folder_;
   BuiltModel<Dim> built_;
@@ -101,6 +94,7 @@ class Run {
 
   std::int64_t cells_start_ = 0;
   LengthMark last_row_;
+  double inertia_error_ = 0.0;  ///< at the latest row
   double inertia_error_max_ = 0.0, momentum_residual_max_ = 0.0;
   std::int64_t degenerate_max_ = 0;
   double pair_steps_ = 0.0;
@@ -110,21 +104,21 @@ class Run {
 };
 
 template <int Dim>
-Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& folder)
+Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& folder,
+              const std::optional<Checkpoint>& checkpoint)
     : scene_(scene),
       options_(options),
       folder_(folder.path()),
       built_(build_model<Dim>(scene)),
       log_(folder.path() / "run.log", options.quiet) {
   const Tissue<Dim>& tissue = model().solver.tissue();
-  scene_.numerics.step_h = tissue.step_h;
   cells_start_ = static_cast<std::int64_t>(tissue.cells.size());
   last_row_ = {0.0, model().solver.axis().length_mm()};
-  make_frame<Dim>(model(), scene_.output.fields);  // refuses unknown fields before anything is written
+  refuse_unknown_fields<Dim>(model(), scene_);  // before anything is written
 
   std::optional<double> continue_h;
-  if (options.resume) {
-    resume_from_checkpoint();
+  if (checkpoint) {
+    resume_from(*checkpoint);
     if (model().solver.steps() > 0) continue_h = tissue.time_h;  // at 0 everything is written once more
   } else {
     write_checkpoint_file();  // first of all: killed at any later instant, --resume goes on
@@ -155,7 +149,8 @@ void Run<Dim>::record() {
   const HistoryRow row = make_history_row<Dim>(model(), last_row_, divisions());
   history_->append(row.values);
   last_row_ = {tissue.time_h, row.length_mm};
-  inertia_error_max_ = std::max(inertia_error_max_, row.inertia_error);
+  inertia_error_ = row.inertia_error;
+  inertia_error_max_ = std::max(inertia_error_max_, inertia_error_);
   momentum_residual_max_ = std::max(momentum_residual_max_, row.momentum_residual);
   for (const ProbeFile& p : probe_files_) {
     std::vector<double> values = p.probe->read(tissue).values();
@@ -178,26 +173,13 @@ void Run<Dim>::write_checkpoint_file() {
   for (const auto& effect : model().effects) effect->save(checkpoint.reals);
   checkpoint.integers["run/cells_start"] = {cells_start_};
   checkpoint.reals["run/last_row"] = {last_row_.time_h, last_row_.length_mm};
-  checkpoint.reals["run/worst"] = {inertia_error_max_, momentum_residual_max_};
+  checkpoint.reals["run/worst"] = {inertia_error_max_, momentum_residual_max_, inertia_error_};
   write_checkpoint(folder_ / "checkpoint.h5", checkpoint);
   checkpoint_h_ = tissue.time_h;
 }
 
 template <int Dim>
-void Run<Dim>::resume_from_checkpoint() {
-  const std::filesystem::path path = folder_ / "checkpoint.h5";
-  const Checkpoint checkpoint = read_checkpoint(path);
-  if (checkpoint.scene_digest != scene_digest(scene_) || checkpoint.dimension != Dim) {
-    throw InputError({scene_.file, 0, "--resume", "the checkpoint in this folder belongs to another scene",
-                      path.string(),
-                      "the scene that began this run, with its --accuracy and --set; only duration_h and the times in "
-                      "[output] may differ, where the step stays the same",
-                      "take " + (folder_ / "scene.toml").string() + ", or another --out"});
-  }
-  if (checkpoint.program_version != ROOTSOIL_VERSION) {
-    throw InputError({path.string(), 0, "--resume", "the checkpoint was written by another version of the program",
-                      checkpoint.program_version, ROOTSOIL_VERSION, "use that version, or start anew in another --out"});
-  }
+void Run<Dim>::resume_from(const Checkpoint& checkpoint) {
   restore_cells<Dim>(checkpoint, model().solver.tissue().cells);
   model().solver.restore(checkpoint.reals, checkpoint.integers);
   for (const auto& effect : model().effects) effect->restore(checkpoint.reals);
@@ -205,6 +187,7 @@ void Run<Dim>::resume_from_checkpoint() {
   last_row_ = {checkpoint.reals.at("run/last_row").at(0), checkpoint.reals.at("run/last_row").at(1)};
   inertia_error_max_ = checkpoint.reals.at("run/worst").at(0);
   momentum_residual_max_ = checkpoint.reals.at("run/worst").at(1);
+  inertia_error_ = checkpoint.reals.at("run/worst").at(2);
   checkpoint_h_ = checkpoint.time_h;
 }
 
@@ -241,7 +224,9 @@ void Run<Dim>::write_summary(const std::string& status) const {
       {"threads", omp_get_max_threads()},
       {"dt_h", {{"min", tissue.step_h}, {"mean", tissue.step_h}, {"max", tissue.step_h}}},
       {"accuracy", scene_.numerics.accuracy},
+      {"inertia_error", inertia_error_},
       {"inertia_error_max", inertia_error_max_},
+      {"discretisation_error", discretisation_error(scene_.numerics.accuracy)},
       {"momentum_residual", momentum_residual_max_},
       {"degenerate_cells_max", degenerate_max_},
       {"cell_file_volume_scale", built_.initial.volume_scale},
@@ -319,17 +304,30 @@ ExitStatus Run<Dim>::go() {
   }
   series_->finish();
   write_summary("done");
-  log_.info("done: {} cells after {} divisions, root {:.4f} mm, inertia error at most {:.2g} of p, {:.1f} s, {:.0f} MB",
-            tissue.cells.size(), divisions(), solver.axis().length_mm(), inertia_error_max_, wall_s_, peak_memory_mb());
+  log_.info("done: {} cells after {} divisions, root {:.4f} mm, {:.1f} s, {:.0f} MB", tissue.cells.size(), divisions(),
+            solver.axis().length_mm(), wall_s_, peak_memory_mb());
+  log_.info("inertia error {:.2g} % of p at the end, at most {:.2g} %; discretisation error about {:.2g} % ({})",
+            100.0 * inertia_error_, 100.0 * inertia_error_max_,
+            100.0 * discretisation_error(scene_.numerics.accuracy), scene_.numerics.accuracy);
   if (scene_.output.picture) log_.info("{}", draw_picture(folder_));
   return ExitStatus::done;
 }
 
 template <int Dim>
-int run_in_folder(const Scene& scene, const RunOptions& options) {
+int run_in_folder(Scene scene, const RunOptions& options) {
   refuse_unstable_law<Dim>(scene);  // before the folder is touched
   const RunFolder folder = claim_run_folder(options.out, options.resume);
-  return static_cast<int>(Run<Dim>(scene, options, folder).go());
+  std::optional<Checkpoint> checkpoint;
+  if (options.resume) {
+    checkpoint = read_checkpoint(folder.path() / "checkpoint.h5");
+    // a step that the program chose stays, even where a longer duration would suggest another
+    if (!scene.numerics.step_h) {
+      if (const auto was = earlier_scene(folder.path())) scene.numerics.step_h = was->numerics.step_h;
+    }
+  }
+  scene.numerics.step_h = choose_step_h<Dim>(scene);
+  if (checkpoint) refuse_foreign_checkpoint(scene, *checkpoint, folder.path());
+  return static_cast<int>(Run<Dim>(scene, options, folder, checkpoint).go());
 }
 
 }  // namespace

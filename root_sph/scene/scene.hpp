@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "root_sph/scene/origins.hpp"
+
 namespace rootsoil {
 
 struct SceneSection {
@@ -150,6 +152,7 @@ struct Scene {
   NumericsSection numerics;
   OutputSection output;
   std::string file;  ///< where it was read, for messages
+  Origins origins;   ///< and where in it
 };
 
 }  // namespace rootsoil

@@ -494,7 +494,7 @@ std::string number_text(double number) {
   return text;
 }
 
-std::string quoted(std::string_view text) {
+std::string toml_quoted(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -679,9 +679,9 @@ std::string toml_text(const Value& value) {
     std::string operator()(bool v) const { return v ? "true" : "false"; }
     std::string operator()(std::int64_t v) const { return fmt::format("{}", v); }
     std::string operator()(double v) const { return number_text(v); }
-    std::string operator()(const std::string& v) const { return quoted(v); }
+    std::string operator()(const std::string& v) const { return toml_quoted(v); }
     std::string operator()(const Numbers& v) const { return list_text(v, number_text); }
-    std::string operator()(const Texts& v) const { return list_text(v, quoted); }
+    std::string operator()(const Texts& v) const { return list_text(v, toml_quoted); }
     std::string operator()(const Rows& v) const {
       return list_text(v, [](const std::array<double, 2>& row) { return list_text(row, number_text); });
     }

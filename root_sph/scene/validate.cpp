@@ -305,22 +305,6 @@ void complete_output(Scene& scene, const Origins& origins) {
 
 }  // namespace
 
-Location Origins::of(std::string path) const {
-  while (true) {
-    const auto found = locations_.find(path);
-    if (found != locations_.end()) return found->second;
-    if (path.empty()) return {};
-    const std::size_t dot = path.rfind('.');
-    path.resize(dot == std::string::npos ? 0 : dot);
-  }
-}
-
-void Origins::fail(const std::string& path, const std::string& what, const std::string& given,
-                   const std::string& allowed, const std::string& remedy) const {
-  const Location place = of(path);
-  throw InputError({place.file, place.line, path, what, given, allowed, remedy});
-}
-
 void validate_and_complete(Scene& scene, const Origins& origins) {
   if (scene.scene.name.empty()) {
     scene.scene.name = name_from_file(scene.file);

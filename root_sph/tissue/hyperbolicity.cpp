@@ -1,42 +1,46 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/tissue/hyperbolicity.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
-
+#include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace rootsoil {
 namespace {
 
-/// Strain (engineering shear) of a plane displacement wave u exp(i n.x): B(n) u.
+/// Eigenvalues of the acoustic tensor Gamma_ik = A_ijkl n_j n_l for n = (cos, sin, 0), A a transversely isotropic tangent
+/// that need not be symmetric: two waves in the plane of n and the axis, and one across it.
 template <int Dim>
-Eigen::Matrix<double, voigt_size<Dim>, Dim> wave_strain(const Vec<Dim>& n) {
-  Eigen::Matrix<double, voigt_size<Dim>, Dim> b = Eigen::Matrix<double, voigt_size<Dim>, Dim>::Zero();
-  for (int a = 0; a < Dim; ++a) b(a, a) = n[a];
+std::array<std::complex<double>, Dim> acoustic_moduli(const VoigtMat<Dim>& a, double cosine, double sine) {
+  constexpr int shear12 = Dim == 2 ? 2 : 5;
+  const double g = a(shear12, shear12);
+  const double gamma11 = a(0, 0) * cosine * cosine + g * sine * sine;
+  const double gamma22 = g * cosine * cosine + a(1, 1) * sine * sine;
+  const double gamma12 = (a(0, 1) + g) * cosine * sine, gamma21 = (a(1, 0) + g) * cosine * sine;
+  const double mean = 0.5 * (gamma11 + gamma22), half = 0.5 * (gamma11 - gamma22);
+  const std::complex<double> root = std::sqrt(std::complex<double>(half * half + gamma12 * gamma21));
   if constexpr (Dim == 2) {
-    b(2, 0) = n[1];
-    b(2, 1) = n[0];
+    return {mean - root, mean + root};
   } else {
-    b(3, 1) = n[2], b(3, 2) = n[1];
-    b(4, 0) = n[2], b(4, 2) = n[0];
-    b(5, 0) = n[1], b(5, 1) = n[0];
+    return {mean - root, mean + root, a(4, 4) * cosine * cosine + a(3, 3) * sine * sine};
   }
-  return b;
 }
 
 }  // namespace
 
 template <int Dim>
 VoigtMat<Dim> elastic_growth_tangent(const ElasticConstants& constants) {
-  return compliance<Dim>(constants).inverse();
+  const VoigtMat<Dim> s = compliance<Dim>(constants);
+  VoigtMat<Dim> tangent = s.diagonal().cwiseInverse().asDiagonal();
+  tangent.template topLeftCorner<Dim, Dim>() = s.template topLeftCorner<Dim, Dim>().inverse();
+  return tangent;
 }
 
 template <int Dim>
 VoigtMat<Dim> pressure_deviator_tangent(const ElasticConstants& constants) {
-  VoigtMat<Dim> tangent = compliance<Dim>(constants).inverse();
+  VoigtMat<Dim> tangent = elastic_growth_tangent<Dim>(constants);
   for (int column = 0; column < voigt_size<Dim>; ++column) {
     tangent.col(column) = deviator<Dim>(tangent.col(column));
   }
@@ -51,15 +55,9 @@ AcousticFinding scan_acoustic_tensor(const VoigtMat<Dim>& tangent) {
   const double scale = tangent.cwiseAbs().maxCoeff();
   for (int degree = 0; degree < 180; ++degree) {
     const double angle = degree * std::numbers::pi / 180.0;
-    Vec<Dim> n = Vec<Dim>::Zero();
-    n[0] = std::cos(angle);
-    n[1] = std::sin(angle);
-    const auto b = wave_strain<Dim>(n);
-    const Mat<Dim> gamma = b.transpose() * tangent * b;
-    const auto eigenvalues = Eigen::EigenSolver<Mat<Dim>>(gamma, false).eigenvalues();
-    for (int k = 0; k < Dim; ++k) {
-      const double real = eigenvalues[k].real();
-      const double imaginary = std::abs(eigenvalues[k].imag());
+    for (const std::complex<double> modulus : acoustic_moduli<Dim>(tangent, std::cos(angle), std::sin(angle))) {
+      const double real = modulus.real();
+      const double imaginary = std::abs(modulus.imag());
       const bool bad = real <= 0.0 || imaginary > 1e-9 * scale;
       const bool worse = imaginary > worst.largest_imaginary_MPa * (1.0 + 1e-9) ||
                          (worst.largest_imaginary_MPa <= 1e-9 * scale && real < worst.smallest_real_MPa);

@@ -22,7 +22,8 @@ VoigtMat<Dim> elastic_growth_tangent(const ElasticConstants& constants);
 template <int Dim>
 VoigtMat<Dim> pressure_deviator_tangent(const ElasticConstants& constants);
 
-/// Scans directions in steps of a degree in a plane through the root axis (enough for transverse isotropy).
+/// Scans directions in steps of a degree in a plane through the root axis, which is enough for a transversely isotropic
+/// tangent (any other is not meant here).
 template <int Dim>
 AcousticFinding scan_acoustic_tensor(const VoigtMat<Dim>& tangent);
 

@@ -66,6 +66,8 @@ def test_check_for_people(program: Program, full: dict[str, Any]):
     for field in full["fields"]:
         assert f"\n  {field['name']} " in text
     assert "step: 0.001 h, 400 steps" in text and "hyperbolic: yes" in text and "estimated run time" in text
+    assert f"discretisation error about {100 * full['discretisation_error']:.2g} %; inertia error " in text
+    assert full["inertia_error_at_start"] > 0.0
 
 
 def test_check_writes_nothing(program: Program):

@@ -82,9 +82,10 @@ def test_pipe(program: Program):
     """Not on a terminal: what the run is and how it ended, and no progress line in the first minute."""
     done = program("run", program.scene(FULL), "--out", "out")
     assert done.out == "" and "\r" not in done.err and "steps/s" not in done.err
-    first, *_, last = done.err.splitlines()
+    first, *_, end, errors = done.err.splitlines()
     assert re.match(r"full: \d+ cells, 0\.4 h in 400 steps of 0\.001 h, 1 thread", first)
-    assert re.match(r"done: \d+ cells after \d+ divisions, root \S+ mm, inertia error ", last)
+    assert re.match(r"done: \d+ cells after \d+ divisions, root \S+ mm, \S+ s, \d+ MB$", end)
+    assert re.match(r"inertia error \S+ % of p at the end, at most \S+ %; discretisation error about ", errors)
 
 
 def test_quiet(program: Program):

@@ -21,7 +21,7 @@ HISTORY = [
 SUMMARY = {
     "status", "time_h", "steps", "cells_start", "cells_end", "divisions", "tip_mm", "length_mm", "wall_s",
     "wall_s_by_effect", "pairs", "pairs_per_s", "peak_memory_mb", "threads", "dt_h", "inertia_error_max",
-    "momentum_residual", "active_effects", "fields",
+    "momentum_residual", "active_effects", "fields", "inertia_error", "discretisation_error",
 }  # fmt: skip
 # name: numbers a cell, unit
 FIELDS = {
@@ -57,6 +57,19 @@ def test_history(full_run: Path):
         assert np.isclose(after["tip_speed_mm_h"], speed)
 
 
+def test_times_are_short_decimals(program: Program, full_run: Path):
+    """No 0.30000000000000004 in history.csv, run.h5, run.xmf, checkpoint.h5 or summary.json."""
+    expected = ["0", "0.1", "0.2", "0.3", "0.4"]
+    assert [line.split(",")[0] for line in (full_run / "history.csv").read_text().splitlines()[1:]] == expected
+    assert [float(frame["time_h"]) for frame in frames(full_run)] == [0.0, 0.1, 0.2, 0.3, 0.4]
+    values = [node.get("Value") for node in ElementTree.parse(full_run / "run.xmf").iter("Time")]
+    assert values == expected
+    # a step that the program chose divides the output interval into some thousands of parts
+    assert program("run", program.scene(SMALL), "--out", "out").status == 0
+    assert [row["time_h"] for row in history(program.folder / "out")] == [0.0, 0.1, 0.2]
+    assert summary(program.folder / "out")["time_h"] == 0.2
+
+
 def test_summary(full_run: Path):
     """summary.json has its keys, and agrees with history.csv and the checkpoint."""
     found, last = summary(full_run), history(full_run)[-1]
@@ -67,6 +80,8 @@ def test_summary(full_run: Path):
     assert found["tip_mm"] == [last["tip_x_mm"], last["tip_y_mm"], last["tip_z_mm"]]
     assert found["dt_h"].keys() == {"min", "mean", "max"} and found["dt_h"]["max"] == 0.001
     assert found["inertia_error_max"] == max(row["inertia_error"] for row in history(full_run))
+    assert found["inertia_error"] == last["inertia_error"]
+    assert 0.0 < found["discretisation_error"] < 0.05
     assert found["momentum_residual"] < 1e-12
     assert {"pressure", "anisotropy", "growth", "division", "obstacle"} <= set(found["active_effects"])
     assert found["threads"] == 1 and found["wall_s"] > 0 and found["pairs"] > 0 and found["peak_memory_mb"] > 0
@@ -134,7 +149,10 @@ def test_log(full_run: Path):
     """run.log has a line with date and time for what was said."""
     lines = (full_run / "run.log").read_text().splitlines()
     assert all(re.match(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d info ", line) for line in lines)
-    assert "done: " in lines[-1]
+    assert "done: " in lines[-2]
+    found = summary(full_run)
+    assert re.search(r"inertia error \S+ % of p at the end, at most \S+ %; discretisation error about \S+ %", lines[-1])
+    assert f"at most {100 * found['inertia_error_max']:.2g} %" in lines[-1]
 
 
 def test_default_folder(program: Program):

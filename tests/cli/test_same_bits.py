@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from cli_support import FULL, Program, checkpoint, frames, history, same_bits, same_results, summary
+from cli_support import FULL, SMALL, Program, checkpoint, frames, history, same_bits, same_results, summary
 
 
 def test_the_scene_has_it_all(full_run: Path):
@@ -60,6 +60,28 @@ def test_resume_of_a_finished_run_changes_nothing(program: Program, full_run: Pa
     assert program("run", scene, "--out", "out", "--resume").status == 0
     assert program("run", scene, "--out", "out", "--resume").status == 0
     same_results(program.folder / "out", full_run)
+
+
+def test_what_may_change_on_resume(program: Program, full_run: Path):
+    """Other checkpoint times, a folder that has moved and a scene file of another name change no bit."""
+    assert program("run", program.scene(FULL), "--out", "out", "--until", 0.05).status == 0
+    (program.folder / "out").rename(program.folder / "moved")
+    done = program(
+        "run", program.scene(FULL, "same.toml"), "--out", "moved", "--resume", "--set", "output.checkpoint_every_h=0.031"
+    )
+    assert done.status == 0, done.err
+    same_results(program.folder / "moved", full_run)
+
+
+def test_a_longer_static_run_keeps_its_step(program: Program):
+    """The step of a static scene follows from its duration; a run that is lengthened keeps the one it began with."""
+    scene = program.scene(SMALL)
+    assert program("run", scene, "--out", "out").status == 0
+    before = summary(program.folder / "out")
+    done = program("run", scene, "--out", "out", "--resume", "--set", "scene.duration_h=0.4")
+    assert done.status == 0, done.err
+    after = summary(program.folder / "out")
+    assert after["time_h"] == 0.4 and after["dt_h"] == before["dt_h"] and after["steps"] == 2 * before["steps"]
 
 
 def wait_for(path: Path, lines: int) -> None:

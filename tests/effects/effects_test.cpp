@@ -79,17 +79,30 @@ TYPED_TEST(Effects, PressureFollowsItsTableInWindowsAndSteps) {
 TYPED_TEST(Effects, GrowthSetsTheSofteningOfFreeCellsFromTheProfileAtThePressure) {
   constexpr int dim = TypeParam::value;
   // an amplitude that follows the pressure shows which pressure was asked for
-  GrowthEffect<dim> growth(this->solver, [](double p) { return SofteningProfile{4e5 * p, 0.05, 0.1, 0.1}; });
+  SofteningProfile profile{4e5, 0.05, 0.1, 1.0};  // c_g = 1: the same everywhere
+  GrowthEffect<dim> growth(this->solver, [&](double p) {
+    SofteningProfile at = profile;
+    at.lambda0_ug_mm3_h *= p;
+    return at;
+  });
   this->fill_root();
-  this->tissue.cells.clamped[5] = 1;
+  test::build_operators<dim>(this->tissue, 1.5, GradientMode::linear);
   this->tissue.pressure_MPa = 0.5;
-  this->run(this->solver.hooks().parameters);
-  const SofteningProfile profile{2e5, 0.05, 0.1, 0.1};
-  ASSERT_NE(this->tissue.material.softening, nullptr);
+  this->run(this->solver.hooks().operators);
+  const auto& softening = *this->tissue.material.softening;
+  for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) EXPECT_NEAR(softening[i], 2e5, 1e-6);
+
+  // a profile that varies over many cells is met to second order
+  profile = {4e5, -0.3, 0.4, -1.0};
+  this->run(this->solver.hooks().operators);
   for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) {
-    const double expected = i == 5 ? 0.0 : profile(this->tissue.cells.distance_to_tip[i]);
-    EXPECT_EQ((*this->tissue.material.softening)[i], expected);
+    const double s = this->tissue.cells.distance_to_tip[i];
+    EXPECT_NEAR(softening[i], 0.5 * profile(s), 0.02 * 2e5) << s;
   }
+
+  this->tissue.cells.clamped[5] = 1;
+  this->run(this->solver.hooks().operators);
+  EXPECT_EQ(softening[5], 0.0);
 }
 
 TYPED_TEST(Effects, AnisotropySetsTheStiffnessFromTheProfileAtThePressure) {
