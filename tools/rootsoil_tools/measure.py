@@ -132,6 +132,22 @@ def tip_speed(run: Run) -> float:
     return float(np.polyfit(time[inside], length[inside], 1)[0]) if np.count_nonzero(inside) > 1 else float("nan")
 
 
+def arresting_force(model: Model, run: Run) -> float:
+    """Axial force that stops growth (closed form; N, in 2D N/mm): p (1 - (dimension - 1) nu_A) times the section."""
+    frame = run.frame(0)
+    radius = float(np.max(radii(frame, run.dimension, np.linspace(0.0, float(frame["distance_to_tip"].max()), 21))))
+    section = 2.0 * radius if run.dimension == 2 else np.pi * radius**2
+    return model.p * (1.0 - (run.dimension - 1) * model.nu_A) * section
+
+
+def tip_angle(frame: Frame, dimension: int) -> float:
+    """Angle (rad) between the x axis and the material axis of the last 0.4 radii of the root."""
+    distance = frame["distance_to_tip"] - frame["distance_to_tip"].min()
+    reach = 0.4 * float(np.max(radii(frame, dimension, np.linspace(0.0, float(distance.max()), 21))))
+    axis = frame["axis"][distance <= reach].mean(axis=0)
+    return float(np.arctan2(np.hypot(axis[1], axis[2]), axis[0]))
+
+
 def cell_length_data() -> tuple[np.ndarray, np.ndarray, str]:
     """Measured cortical cell length of Arabidopsis: distance from the tip (mm), length (um), and whose it is."""
     path = Path(__file__).parent.parent / "data" / "arabidopsis_cell_length.csv"
