@@ -43,6 +43,7 @@ class Member:
     tip_speed: float  # mm/h
     growth_zone: float  # mm
     mature_radius: float  # mm
+    radius_drift: float  # 1/h
 
 
 def request_of(program: Path, scene: Path, p: float, arguments: list[str]) -> dict:
@@ -97,6 +98,7 @@ def measure_member(p: float, run: Run) -> Member:
         tip_speed=measure.tip_speed(run),
         growth_zone=zone,
         mature_radius=measure.mature_radius(model, run),
+        radius_drift=measure.radius_drift(model, run),
     )
 
 
@@ -173,15 +175,16 @@ def table(members: list[Member]) -> str:
     """The series in numbers, radii relative to that at the highest pressure differential."""
     reference = max(members, key=lambda member: member.p)
     lines = [
-        f"{'p':>7} {'tip speed':>10} {'peak rate':>10} {'growth zone':>12} {'mature radius':>14} {'relative':>9}",
-        f"{'MPa':>7} {'mm/h':>10} {'1/h':>10} {'mm':>12} {'mm':>14} {f'to p = {reference.p:g}':>9}",
+        f"{'p':>7} {'tip speed':>10} {'peak rate':>10} {'growth zone':>12} {'mature radius':>14} {'relative':>9} "
+        f"{'drift':>8}",
+        f"{'MPa':>7} {'mm/h':>10} {'1/h':>10} {'mm':>12} {'mm':>14} {f'to p = {reference.p:g}':>9} {'%/10 h':>8}",
     ]
     for m in members:
         peak = np.nanmax(m.profiles["axial_strain_rate"].mean)
         relative = 100.0 * (m.mature_radius / reference.mature_radius - 1.0)
         lines.append(
             f"{m.p:7g} {m.tip_speed:10.4f} {peak:10.4f} {m.growth_zone:12.3f} {m.mature_radius:14.4f} "
-            f"{relative:+8.1f}%"
+            f"{relative:+8.1f}% {1e3 * m.radius_drift:8.2f}"
         )
     if any(np.isnan(m.mature_radius) for m in members):
         lines.append("nan: no new tissue has left the growth zone yet, the run is too short")

@@ -170,7 +170,8 @@ def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     panels[2].set_ylabel("radius (mm)")
     mature = measure.mature_radius(model, run)
     if np.isfinite(mature):
-        said.append(f"mature radius {mature:.4g} mm")
+        drift = 1e3 * measure.radius_drift(model, run)
+        said.append(f"mature radius {mature:.4g} mm, changing by {drift:.2f} % in 10 h")
     for panel in panels:
         panel.set_xlim(0.0, end)
     return said

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""obstacle_tilted, coarser and shorter: symmetric until it touches, does not pass in, keeps to Coulomb's cone, turns."""
+"""obstacle_tilted, coarser and shorter: symmetric until contact, no penetration, Coulomb's cone kept, turns."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cli_support import PROJECT, Program, frames, history
 
 SCENE = PROJECT / "scenarios" / "obstacle_tilted.toml"
 CELL_MM = 0.03
-COARSER = [f"root.cell_size_mm={CELL_MM}", f"division.l0_mm={1.5 * CELL_MM}", "numerics.step_h=1e-4"]
+COARSER = [f"root.cell_size_mm={CELL_MM}", f"division.l0_mm={1.5 * CELL_MM}", "numerics.step_h=1e-4", "output.picture=false"]
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def run(program_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """1.6 h; the tip touches the box at about 0.8 h."""
     program = Program(program_path, tmp_path_factory.mktemp("obstacle"))
     overrides = [word for value in COARSER for word in ("--set", value)]
-    done = program("run", SCENE, "--out", "run", "--threads", 1, "--until", 1.6, "--set", "output.picture=false", *overrides)
+    done = program("run", SCENE, "--out", "run", "--threads", 1, "--until", 1.6, *overrides)
     assert done.status == 0, done.err
     return program.folder / "run"
 

@@ -105,11 +105,12 @@ def strain_profiles(first: Frame, last: Frame, dimension: int, edges: np.ndarray
     return strains[0], strains[1]
 
 
-def mature_radius(model: Model, run: Run) -> float:
-    """Mean radius (mm) just behind the growth zone, over a quarter of its length; NaN where the root ends before.
+def mature_radii(model: Model, run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Times (h) of the last WINDOW_H and the radius (mm) just behind the growth zone, over a quarter of its length.
 
     Only of tissue that has flowed through the growth zone since the start: tissue that was further than a radius
-    from the tip at the start and is still in the root is left out, as far as the closed form can tell.
+    from the tip at the start and is still in the root is left out, as far as the closed form can tell. Empty where
+    the root ends before.
     """
     last = run.frame(-1)
     length = float(last["distance_to_tip"].max())
@@ -117,9 +118,22 @@ def mature_radius(model: Model, run: Run) -> float:
     tip_radius = float(np.max(radii(last, run.dimension, edges_of(length, length / 20.0))))
     end = min(1.25 * zone, length, model.carried_to(tip_radius, float(run.times_h[-1]), length))
     if end <= zone:
-        return float("nan")
+        return np.empty(0), np.empty(0)
     window = np.array([zone, end])
-    return float(np.mean([radii(run.frame(i), run.dimension, window)[0] for i in run.window(WINDOW_H)]))
+    frames = run.window(WINDOW_H)
+    return run.times_h[frames], np.array([radii(run.frame(i), run.dimension, window)[0] for i in frames])
+
+
+def mature_radius(model: Model, run: Run) -> float:
+    """Mean of mature_radii (mm); NaN where there is none."""
+    radius = mature_radii(model, run)[1]
+    return float(np.mean(radius)) if radius.size else float("nan")
+
+
+def radius_drift(model: Model, run: Run) -> float:
+    """Relative change of mature_radii per hour (1/h), from the least-squares line; NaN below three frames."""
+    time, radius = mature_radii(model, run)
+    return float(np.polyfit(time, np.log(radius), 1)[0]) if radius.size > 2 else float("nan")
 
 
 def tip_speed(run: Run) -> float:
