@@ -133,9 +133,10 @@ class Zoom:
 def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     """Axial strain rate, cell length and radius with theory and data; returns lines to print."""
     last = run.frame(-1)
-    length = float(last["distance_to_tip"].max())
+    lengths = [float(run.frame(index)["distance_to_tip"].max()) for index in run.window(measure.WINDOW_H)]
+    length = lengths[-1]
     zone = model.growth_zone(length)
-    end = min(1.6 * zone, length)
+    end = min(1.6 * zone, *lengths)  # further back not every frame has tissue
     edges = measure.edges_of(end, measure.bin_width(last, run.dimension, zone))
     profiles = measure.growth_profiles(run, edges)
     s = np.linspace(0.0, end, 600)
@@ -147,7 +148,8 @@ def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     rate = profiles["axial_strain_rate"]
     peak = model.axial_rate(s).max()
     said.append(f"peak axial strain rate {np.nanmax(rate.mean):.4g} /h (closed form {peak:.4g} /h)")
-    said.append(f"tip speed {measure.tip_speed(run):.4g} mm/h (closed form {model.tip_speed(length):.4g} mm/h)")
+    tip_speed = np.mean([model.tip_speed(at) for at in lengths])
+    said.append(f"tip speed {measure.tip_speed(run):.4g} mm/h (closed form {tip_speed:.4g} mm/h)")
 
     draw.draw_profile(panels[1], profiles["cell_length"])
     panels[1].set_ylabel("cell length (µm)")
