@@ -88,7 +88,7 @@ class Stack:
         axes.axis("off")
         last_offset = (0.0, 0.0)
         for number, frame in enumerate(self.frames):
-            column, row = divmod(number, self.rows)
+            row, column = divmod(number, self.columns)
             middle = -(row + 0.5) * self.row_height * paper
             left = column * width / self.columns + LABEL_WIDTH * paper
             offset = (left - self.low[0], middle - (self.low[1] + self.high[1]) / 2.0)
@@ -137,7 +137,7 @@ def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     length = lengths[-1]
     zone = model.growth_zone(length)
     end = min(1.6 * zone, *lengths)  # further back not every frame has tissue
-    edges = measure.edges_of(end, measure.bin_width(last, run.dimension, zone))
+    edges = measure.edges_of(end, measure.bin_width(last, run.dimension, min(zone, end)))
     profiles = measure.growth_profiles(run, edges)
     s = np.linspace(0.0, end, 600)
     said = []
