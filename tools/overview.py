@@ -164,8 +164,8 @@ def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     draw.draw_profile(panels[2], profiles["radius"])
     start = min(int(np.searchsorted(edges, 0.25 * zone)), len(edges) - 2)
     s_start, r_start = profiles["radius"].s_mm[start], profiles["radius"].mean[start]
-    # tissue that has come from the tip's cap since the start; what lies further back was put there
-    steady = s[(s >= s_start) & (s <= model.carried_to(r_start, float(run.times_h[-1]), length))]
+    # tissue that has passed the dot since the start; what lies further back began beyond it
+    steady = s[(s >= s_start) & (s <= model.carried_to(s_start, float(run.times_h[-1]), length))]
     if steady.size:
         panels[2].plot(steady, model.radius(steady, s_start, r_start), **draw.THEORY_LINE)
         panels[2].plot(s_start, r_start, "o", color=draw.THEORY, markersize=2.6)

@@ -108,15 +108,13 @@ def strain_profiles(first: Frame, last: Frame, dimension: int, edges: np.ndarray
 def mature_radii(model: Model, run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Times (h) of the last WINDOW_H and the radius (mm) just behind the growth zone, over a quarter of its length.
 
-    Only of tissue that has flowed through the growth zone since the start: tissue that was further than a radius
-    from the tip at the start and is still in the root is left out, as far as the closed form can tell. Empty where
-    the root ends before.
+    Only of tissue that has flowed through the growth zone since the start: tissue that was beyond the zone's first
+    quarter at the start is left out, as far as the closed form can tell. Empty where the root ends before.
     """
     last = run.frame(-1)
     length = float(last["distance_to_tip"].max())
     zone = model.growth_zone(length)
-    tip_radius = float(np.max(radii(last, run.dimension, edges_of(length, length / 20.0))))
-    end = min(1.25 * zone, length, model.carried_to(tip_radius, float(run.times_h[-1]), length))
+    end = min(1.25 * zone, length, model.carried_to(0.25 * zone, float(run.times_h[-1]), length))
     if end <= zone:
         return np.empty(0), np.empty(0)
     window = np.array([zone, end])
