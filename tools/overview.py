@@ -42,7 +42,8 @@ class Stack:
     """The root at several times on one panel: where each goes, and at which scale."""
 
     def __init__(self, run: Run):
-        wanted = np.linspace(run.times_h[0], run.times_h[-1], TIMES)
+        times = TIMES if "growth" in run.scene else 2  # elastic strains are too small to see
+        wanted = np.linspace(run.times_h[0], run.times_h[-1], times)
         indices = sorted({int(np.argmin(np.abs(run.times_h - time))) for time in wanted})
         self.run = run
         self.frames = [run.frame(index) for index in indices]
@@ -166,7 +167,7 @@ def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     s_start, r_start = profiles["radius"].s_mm[start], profiles["radius"].mean[start]
     # tissue that has passed the dot since the start; what lies further back began beyond it
     steady = s[(s >= s_start) & (s <= model.carried_to(s_start, float(run.times_h[-1]), length))]
-    if steady.size:
+    if steady.size and zone < length:  # tissue that never stops growing has no steady state
         panels[2].plot(steady, model.radius(steady, s_start, r_start), **draw.THEORY_LINE)
         panels[2].plot(s_start, r_start, "o", color=draw.THEORY, markersize=2.6)
     panels[2].set_ylabel("radius (mm)")
@@ -322,7 +323,8 @@ def draw_overview(run: Run, out: Path) -> list[str]:
     title = run.name if run.dimension == 2 else f"{run.name} (middle plane)"
     figure.text((MARGIN + 6.0) / PAGE_WIDTH, letter_bottom / height, title, size=8.5, va="bottom")
     draw.scale_bar(figure, 0.55 * PAGE_WIDTH, height - 4.5, stack.scale)
-    division_bar(figure, colours, height - 2.5)
+    if colours.N > 1:
+        division_bar(figure, colours, height - 2.5)
     stack_axes = draw.place(figure, MARGIN, top - stack.height, PAGE_WIDTH - 2.0 * MARGIN, stack.height)
     stack.draw(stack_axes, colours)
     if zoom:
