@@ -115,7 +115,7 @@ def draw_series(members: list[Member], out: Path) -> None:
     for member, blue in zip(order, blues):
         s = np.linspace(0.0, end, 600)
         line = {"color": blue, "linewidth": 1.3}
-        theory = {"color": blue, "linewidth": 0.8, "linestyle": (0, (4, 2))}
+        theory = {"color": draw.THEORY, "linewidth": 0.6, "linestyle": (0, (4, 3)), "zorder": 3}
         panels[0].plot(s, member.model.softening(s) / 1e3, label=f"{member.p:g}", **line)
         panels[2].plot(s, member.model.radial_modulus(s) / 1e3, **line)
         panels[1].plot(s, member.model.axial_rate(s), **theory)
@@ -136,7 +136,7 @@ def draw_series(members: list[Member], out: Path) -> None:
     panels[1].legend(
         handles=[
             Line2D([], [], color=blues[-1], linewidth=1.3, label="simulation"),
-            Line2D([], [], color=blues[-1], linewidth=0.8, linestyle=(0, (4, 2)), label="closed form"),
+            Line2D([], [], color=draw.THEORY, linewidth=0.6, linestyle=(0, (4, 3)), label="closed form"),
         ],
         frameon=False,
         loc="upper right",
