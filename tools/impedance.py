@@ -43,6 +43,7 @@ class Member:
     tip_speed: float  # mm/h
     growth_zone: float  # mm
     mature_radius: float  # mm
+    radius_drift: float  # 1/h
 
 
 def request_of(program: Path, scene: Path, p: float, arguments: list[str]) -> dict:
@@ -97,6 +98,7 @@ def measure_member(p: float, run: Run) -> Member:
         tip_speed=measure.tip_speed(run),
         growth_zone=zone,
         mature_radius=measure.mature_radius(model, run),
+        radius_drift=measure.radius_drift(model, run),
     )
 
 
@@ -113,7 +115,7 @@ def draw_series(members: list[Member], out: Path) -> None:
     for member, blue in zip(order, blues):
         s = np.linspace(0.0, end, 600)
         line = {"color": blue, "linewidth": 1.3}
-        theory = {"color": blue, "linewidth": 0.8, "linestyle": (0, (4, 2))}
+        theory = {"color": draw.THEORY, "linewidth": 0.6, "linestyle": (0, (4, 3)), "zorder": 3}
         panels[0].plot(s, member.model.softening(s) / 1e3, label=f"{member.p:g}", **line)
         panels[2].plot(s, member.model.radial_modulus(s) / 1e3, **line)
         panels[1].plot(s, member.model.axial_rate(s), **theory)
@@ -134,7 +136,7 @@ def draw_series(members: list[Member], out: Path) -> None:
     panels[1].legend(
         handles=[
             Line2D([], [], color=blues[-1], linewidth=1.3, label="simulation"),
-            Line2D([], [], color=blues[-1], linewidth=0.8, linestyle=(0, (4, 2)), label="closed form"),
+            Line2D([], [], color=draw.THEORY, linewidth=0.6, linestyle=(0, (4, 3)), label="closed form"),
         ],
         frameon=False,
         loc="upper right",
@@ -173,15 +175,16 @@ def table(members: list[Member]) -> str:
     """The series in numbers, radii relative to that at the highest pressure differential."""
     reference = max(members, key=lambda member: member.p)
     lines = [
-        f"{'p':>7} {'tip speed':>10} {'peak rate':>10} {'growth zone':>12} {'mature radius':>14} {'relative':>9}",
-        f"{'MPa':>7} {'mm/h':>10} {'1/h':>10} {'mm':>12} {'mm':>14} {f'to p = {reference.p:g}':>9}",
+        f"{'p':>7} {'tip speed':>10} {'peak rate':>10} {'growth zone':>12} {'mature radius':>14} {'relative':>9} "
+        f"{'drift':>8}",
+        f"{'MPa':>7} {'mm/h':>10} {'1/h':>10} {'mm':>12} {'mm':>14} {f'to p = {reference.p:g}':>9} {'%/10 h':>8}",
     ]
     for m in members:
         peak = np.nanmax(m.profiles["axial_strain_rate"].mean)
         relative = 100.0 * (m.mature_radius / reference.mature_radius - 1.0)
         lines.append(
             f"{m.p:7g} {m.tip_speed:10.4f} {peak:10.4f} {m.growth_zone:12.3f} {m.mature_radius:14.4f} "
-            f"{relative:+8.1f}%"
+            f"{relative:+8.1f}% {1e3 * m.radius_drift:8.2f}"
         )
     if any(np.isnan(m.mature_radius) for m in members):
         lines.append("nan: no new tissue has left the growth zone yet, the run is too short")

@@ -5,7 +5,8 @@
 A: the root at several times, each cell as its ellipse, coloured by its number of divisions (as the paper's Fig. 4A);
 in 3D the cells that the middle plane cuts. Below it the tip at the last time, where A is too small to see cells.
 B-D, over the distance from the tip, means of the last hours with the closed form drawn in: axial strain rate (1/h),
-cell length (um), radius (mm). In a scene without growth: axial and radial strain against Eq. 8, and radius.
+cell length (um), radius (mm). In a scene without growth: axial and radial strain against Eq. 8, and radius. Where a
+growing root meets obstacles: contact force (N, in 2D N/mm) and deflection over time, and axial strain rate.
 """
 
 from __future__ import annotations
@@ -29,27 +30,38 @@ HEADER = 10.0
 STACK_MAX_HEIGHT = 95.0
 ROW_GAP = 2.5
 LABEL_WIDTH = 10.0
+TICKS_WIDTH = 13.0  # of a panel's tick labels and axis label
 ZOOM_MAX_HEIGHT = 34.0
 PROFILE_HEIGHT = 40.0
-PANEL_GAP = 15.0
+PANEL_GAP = 16.0
 TIMES = 6
+DISTANCE = "distance from the tip (mm)"
 
 
 class Stack:
     """The root at several times on one panel: where each goes, and at which scale."""
 
     def __init__(self, run: Run):
-        wanted = np.linspace(run.times_h[0], run.times_h[-1], TIMES)
+        times = TIMES if "growth" in run.scene else 2  # elastic strains are too small to see
+        wanted = np.linspace(run.times_h[0], run.times_h[-1], times)
         indices = sorted({int(np.argmin(np.abs(run.times_h - time))) for time in wanted})
         self.run = run
         self.frames = [run.frame(index) for index in indices]
-        low = np.min([f["position"][:, :2].min(axis=0) for f in self.frames], axis=0)
-        high = np.max([f["position"][:, :2].max(axis=0) for f in self.frames], axis=0)
+        shown = [f["position"][self._of_interest(f), :2] for f in self.frames]
+        low = np.min([x.min(axis=0) for x in shown], axis=0)
+        high = np.max([x.max(axis=0) for x in shown], axis=0)
         edge = max(float(f["cell_axes"][:, 0].max()) for f in self.frames) / 2.0
-        pad = 0.05 * float(np.max(high - low)) if run.scene.get("obstacle") else 0.0  # to show what the root meets
-        self.low, self.high = low - edge, high + edge + [pad, pad]
-        self.low[1] -= pad
+        pad = 0.08 * float(np.max(high - low)) if run.scene.get("obstacle") else 0.0  # to show what the root meets
+        self.low, self.high = low - edge - [0.0, pad], high + edge + pad
         self._arrange()
+
+    def _of_interest(self, frame: Frame) -> np.ndarray:
+        """Which cells must be in view: all; where the root meets obstacles, those within the growth zone."""
+        distance = frame["distance_to_tip"]
+        if not self.run.scene.get("obstacle"):
+            return np.ones_like(distance, dtype=bool)
+        model = model_of(self.run.scene, frame.time_h)
+        return distance < (model.growth_zone(float(distance.max())) if model.growth else np.inf)
 
     def _arrange(self) -> None:
         """As many columns as leave the roots nearly as large on the paper as they can be."""
@@ -77,13 +89,15 @@ class Stack:
         axes.axis("off")
         last_offset = (0.0, 0.0)
         for number, frame in enumerate(self.frames):
-            column, row = divmod(number, self.rows)
+            row, column = divmod(number, self.columns)
             middle = -(row + 0.5) * self.row_height * paper
             left = column * width / self.columns + LABEL_WIDTH * paper
             offset = (left - self.low[0], middle - (self.low[1] + self.high[1]) / 2.0)
             cell_mm = float(np.median(frame["cell_axes"][:, 1])) * self.scale
             draw.draw_obstacles(axes, self.run.scene.get("obstacle", []), (*self.low, *self.high), offset)
-            draw.draw_cells(axes, frame, self.run.dimension, colours, offset, edge_mm=0.04 * cell_mm * (cell_mm > 0.7))
+            inside = np.all((frame["position"][:, :2] > self.low) & (frame["position"][:, :2] < self.high), axis=1)
+            edge_mm = 0.04 * cell_mm * (cell_mm > 0.7)
+            draw.draw_cells(axes, frame, self.run.dimension, colours, offset, chosen=inside, edge_mm=edge_mm)
             axes.text(left - 1.5 * paper, middle, f"{frame.time_h:.3g} h", ha="right", va="center")
             last_offset = offset
         self.last_offset = last_offset
@@ -120,10 +134,11 @@ class Zoom:
 def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     """Axial strain rate, cell length and radius with theory and data; returns lines to print."""
     last = run.frame(-1)
-    length = float(last["distance_to_tip"].max())
+    lengths = [float(run.frame(index)["distance_to_tip"].max()) for index in run.window(measure.WINDOW_H)]
+    length = lengths[-1]
     zone = model.growth_zone(length)
-    end = min(1.6 * zone, length)
-    edges = measure.edges_of(end, measure.bin_width(last, run.dimension, zone))
+    end = min(1.6 * zone, *lengths)  # further back not every frame has tissue
+    edges = measure.edges_of(end, measure.bin_width(last, run.dimension, min(zone, end)))
     profiles = measure.growth_profiles(run, edges)
     s = np.linspace(0.0, end, 600)
     said = []
@@ -134,7 +149,8 @@ def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     rate = profiles["axial_strain_rate"]
     peak = model.axial_rate(s).max()
     said.append(f"peak axial strain rate {np.nanmax(rate.mean):.4g} /h (closed form {peak:.4g} /h)")
-    said.append(f"tip speed {measure.tip_speed(run):.4g} mm/h (closed form {model.tip_speed(length):.4g} mm/h)")
+    tip_speed = np.mean([model.tip_speed(at) for at in lengths])
+    said.append(f"tip speed {measure.tip_speed(run):.4g} mm/h (closed form {tip_speed:.4g} mm/h)")
 
     draw.draw_profile(panels[1], profiles["cell_length"])
     panels[1].set_ylabel("cell length (µm)")
@@ -149,18 +165,61 @@ def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     draw.draw_profile(panels[2], profiles["radius"])
     start = min(int(np.searchsorted(edges, 0.25 * zone)), len(edges) - 2)
     s_start, r_start = profiles["radius"].s_mm[start], profiles["radius"].mean[start]
-    # tissue that has come from the tip's cap since the start; what lies further back was put there
-    steady = s[(s >= s_start) & (s <= model.carried_to(r_start, float(run.times_h[-1]), length))]
-    if steady.size:
+    # tissue that has passed the dot since the start; what lies further back began beyond it
+    steady = s[(s >= s_start) & (s <= model.carried_to(s_start, float(run.times_h[-1]), length))]
+    if steady.size and zone < length:  # tissue that never stops growing has no steady state
         panels[2].plot(steady, model.radius(steady, s_start, r_start), **draw.THEORY_LINE)
         panels[2].plot(s_start, r_start, "o", color=draw.THEORY, markersize=2.6)
     panels[2].set_ylabel("radius (mm)")
     mature = measure.mature_radius(model, run)
     if np.isfinite(mature):
-        said.append(f"mature radius {mature:.4g} mm")
+        drift = 1e3 * measure.radius_drift(model, run)
+        said.append(f"mature radius {mature:.4g} mm, changing by {drift:.2f} % in 10 h")
     for panel in panels:
         panel.set_xlim(0.0, end)
     return said
+
+
+def draw_contact(run: Run, model: Model, panels: list) -> list[str]:
+    """Contact force and deflection over time, axial strain rate with theory; returns lines to print."""
+    history = run.history()
+    time, force = history["time_h"], history["contact_force_N"]
+    unit = "N" if run.dimension == 3 else "N/mm"
+    # over decades: what it takes to deflect the root is far below what would arrest it
+    arresting = measure.arresting_force(model, run)
+    panels[0].semilogy(time, np.maximum(force, 1e-6 * arresting), color=draw.SIMULATION, linewidth=1.0)
+    panels[0].set_ylim(1e-4 * arresting, 2.0 * arresting)
+    panels[0].axhline(arresting, **draw.THEORY_LINE)
+    panels[0].text(0.98 * time[-1], 0.9 * arresting, "arrests the root", ha="right", va="top", size=7)
+    panels[0].set_ylabel(f"contact force ({unit})")
+
+    lateral = np.hypot(*(history[f"tip_{axis}_mm"] - history[f"tip_{axis}_mm"][0] for axis in "yz"))
+    angle = np.degrees([measure.tip_angle(run.frame(index), run.dimension) for index in range(len(run.times_h))])
+    panels[1].plot(time, lateral, color=draw.SIMULATION, linewidth=1.3)
+    panels[1].set_ylabel("deflection of the tip (mm)", color=draw.SIMULATION)
+    twin = panels[1].twinx()
+    twin.plot(run.times_h, angle, color=draw.DATA, linewidth=1.3)
+    twin.set_ylabel("angle of the tip (°)", color=draw.DATA)
+    twin.set_ylim(0.0, max(1.1 * float(np.max(angle)), 1.0))
+    twin.spines["right"].set_visible(True)
+
+    length = float(run.frame(-1)["distance_to_tip"].max())
+    zone = model.growth_zone(length)
+    edges = measure.edges_of(min(1.2 * zone, length), measure.bin_width(run.frame(-1), run.dimension, zone))
+    s = np.linspace(0.0, edges[-1], 600)
+    draw.draw_profile(panels[2], measure.growth_profiles(run, edges)["axial_strain_rate"])
+    panels[2].plot(s, model.axial_rate(s), **draw.THEORY_LINE)
+    panels[2].set_ylabel("axial strain rate (1/h)")
+    for panel, end, label in zip(panels, (time[-1], time[-1], s[-1]), ("time (h)", "time (h)", DISTANCE)):
+        panel.set_xlim(0.0, end)
+        panel.set_xlabel(label)
+    touching = np.flatnonzero(force > 0.0)
+    first = f"contact from {time[touching[0]]:.3g} h" if touching.size else "no contact"
+    return [
+        f"{first}, largest force {force.max():.3g} {unit}, at the end {force[-1]:.3g} {unit} "
+        f"(arresting force {arresting:.3g} {unit})",
+        f"deflection at the end {lateral[-1]:.3g} mm, angle of the tip {angle[-1]:.3g} degrees",
+    ]
 
 
 def draw_strain(run: Run, model: Model, panels: list) -> list[str]:
@@ -199,11 +258,12 @@ def legend(figure, bottom: float, run: Run, growing: bool) -> None:
     """One line above the panels that says what is drawn how."""
     if growing:
         times = run.times_h[run.window(measure.WINDOW_H)]
+        closed_form = "closed form" + ("" if run.scene.get("obstacle") else " (radius: steady, from the dot)")
         period = f"{times[0]:.3g}–{times[-1]:.3g} h" if len(times) > 1 else f"{times[-1]:.3g} h"
         entries = [
             (Line2D([], [], color=draw.SIMULATION, linewidth=1.3), f"simulation, mean of {period}"),
             (Patch(facecolor=draw.SIMULATION, alpha=0.22), "16–84 %"),
-            (Line2D([], [], **draw.THEORY_LINE), "closed form (radius: steady, from the dot)"),
+            (Line2D([], [], **draw.THEORY_LINE), closed_form),
         ]
         if "arabidopsis" in run.name.lower():
             source = measure.cell_length_data()[2]
@@ -247,7 +307,8 @@ def draw_overview(run: Run, out: Path) -> list[str]:
     stack = Stack(run)
     last = stack.frames[-1]
     cell_paper = float(np.median(last["cell_axes"][:, 1])) * stack.scale
-    zoom = Zoom(run, last) if cell_paper < 0.8 else None
+    contact = growing and bool(np.any(run.history().get("contact_force_N", np.zeros(1)) > 0.0))
+    zoom = Zoom(run, last) if cell_paper < 0.8 and not contact else None
     colours = draw.division_colours(int(max(frame["generation"].max() for frame in stack.frames)))
 
     below = 11.0  # tick labels and axis label
@@ -262,7 +323,8 @@ def draw_overview(run: Run, out: Path) -> list[str]:
     title = run.name if run.dimension == 2 else f"{run.name} (middle plane)"
     figure.text((MARGIN + 6.0) / PAGE_WIDTH, letter_bottom / height, title, size=8.5, va="bottom")
     draw.scale_bar(figure, 0.55 * PAGE_WIDTH, height - 4.5, stack.scale)
-    division_bar(figure, colours, height - 2.5)
+    if colours.N > 1:
+        division_bar(figure, colours, height - 2.5)
     stack_axes = draw.place(figure, MARGIN, top - stack.height, PAGE_WIDTH - 2.0 * MARGIN, stack.height)
     stack.draw(stack_axes, colours)
     if zoom:
@@ -274,18 +336,22 @@ def draw_overview(run: Run, out: Path) -> list[str]:
         draw.scale_bar(figure, MARGIN + LABEL_WIDTH + width, bottom - 3.0, zoom.scale)
         corner = zoom.low + stack.last_offset
         stack_axes.add_patch(
-            Rectangle(corner, *(zoom.high - zoom.low), fill=False, edgecolor="#606060", linewidth=0.5)
+            Rectangle(corner, *(zoom.high - zoom.low), fill=False, edgecolor="#606060", linewidth=0.5, clip_on=False)
         )
 
-    width = (PAGE_WIDTH - 2.0 * MARGIN - LABEL_WIDTH - 2.0 * PANEL_GAP) / 3.0
-    lefts = [MARGIN + LABEL_WIDTH + number * (width + PANEL_GAP) for number in range(3)]
+    gap = PANEL_GAP + (6.0 if contact else 0.0)  # room for an axis on the right
+    width = (PAGE_WIDTH - 2.0 * MARGIN - TICKS_WIDTH - 2.0 * gap) / 3.0
+    lefts = [MARGIN + TICKS_WIDTH + number * (width + gap) for number in range(3)]
     panels = [draw.place(figure, left, below, width, PROFILE_HEIGHT) for left in lefts]
-    said = draw_growth(run, model, panels) if growing else draw_strain(run, model, panels)
+    for panel in panels:
+        panel.set_xlabel(DISTANCE)
+    draw_panels = draw_contact if contact else draw_growth if growing else draw_strain
+    said = draw_panels(run, model, panels)
     for left, panel, name in zip(lefts, panels, "BCD"):
-        panel.set_xlabel("distance from the tip (mm)")
         low, high = panel.get_ylim()
-        panel.set_ylim(bottom=low if low < -0.1 * high else 0.0)
-        draw.letter(figure, left - LABEL_WIDTH, below + PROFILE_HEIGHT + 1.0, name)
+        if panel.get_yscale() == "linear":
+            panel.set_ylim(bottom=low if low < -0.1 * high else 0.0)
+        draw.letter(figure, left - TICKS_WIDTH, below + PROFILE_HEIGHT + 1.0, name)
     legend(figure, below + PROFILE_HEIGHT + 7.0, run, growing)
 
     temporary = out.with_name(f".{out.name}.part{out.suffix}")

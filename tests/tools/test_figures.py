@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import pytest
 from synthetic import make_growing_run, make_strained_run
 
 from rootsoil_tools import measure
-from rootsoil_tools.runs import Run, RunError
+from rootsoil_tools.runs import Frame, Run, RunError
 from rootsoil_tools.theory import model_of
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -138,6 +139,44 @@ def test_growth_profiles_find_the_closed_form(grown: Path):
     rate = measure.growth_profiles(run, measure.edges_of(1.0, 0.05))["axial_strain_rate"]
     assert rate.mean[2:] == pytest.approx(model.axial_rate(rate.s_mm[2:]), abs=0.02)
     assert measure.tip_speed(run) == pytest.approx(model.tip_speed(3.0), rel=0.02)
+
+
+def test_drift_of_the_mature_radius(grown: Path, tmp_path: Path):
+    """In 2D the radius goes as the volumes: 1 % more of them an hour drifts by 0.01 /h more."""
+    faster = shutil.copytree(grown, tmp_path / "run")
+    with h5py.File(faster / "run.h5", "r+") as file:
+        for group in file["frames"].values():
+            group["volume"][...] *= np.exp(0.01 * group.attrs["time_h"])
+    model = model_of(Run(grown).scene)
+    radius, drift = (f(model, Run(grown)) for f in (measure.mature_radius, measure.radius_drift))
+    assert np.isfinite(radius) and np.isfinite(drift)
+    assert measure.radius_drift(model, Run(faster)) == pytest.approx(drift + 0.01, abs=1e-9)
+    assert measure.mature_radius(model, Run(faster)) == pytest.approx(radius * np.exp(0.01 * 10.0), rel=1e-3)
+
+
+def test_contact_measures(grown: Path, tmp_path: Path):
+    for dimension, section in ((2, 0.6), (3, 112 * 0.05**2)):
+        run = Run(make_strained_run(tmp_path / f"{dimension}", dimension=dimension))
+        model = model_of(run.scene)
+        expected = model.p * (1.0 - (dimension - 1) * 0.06) * section
+        assert measure.arresting_force(model, run) == pytest.approx(expected, rel=0.02)
+    frame = Run(grown).frame(0)
+    turned = np.where(frame["distance_to_tip"][:, None] < 0.05, [0.8, -0.6, 0.0], [1.0, 0.0, 0.0])
+    bent = Frame(0.0, {**frame.fields, "axis": turned})
+    assert measure.tip_angle(bent, 2) == pytest.approx(np.arctan2(0.6, 0.8))
+
+
+def test_overview_of_contact_draws_force_over_time(project: Path, grown: Path, tmp_path: Path):
+    touching = shutil.copytree(grown, tmp_path / "run")
+    (touching / "history.csv").write_text(
+        "time_h,length_mm,tip_y_mm,tip_z_mm,contact_force_N\n"
+        + "".join(f"{t},{1.5 + 0.2 * t},{0.01 * t},0,{0.002 * (t > 3)}\n" for t in range(13))
+    )
+    done = overview(project, touching)
+    assert done.returncode == 0, done.stderr
+    assert "contact from 4 h" in done.stdout and "largest force 0.002 N/mm" in done.stdout
+    assert "deflection at the end 0.12 mm" in done.stdout
+    assert (touching / "overview.png").read_bytes().startswith(PNG)
 
 
 def test_bins_and_determination():

@@ -105,21 +105,33 @@ def strain_profiles(first: Frame, last: Frame, dimension: int, edges: np.ndarray
     return strains[0], strains[1]
 
 
-def mature_radius(model: Model, run: Run) -> float:
-    """Mean radius (mm) just behind the growth zone, over a quarter of its length; NaN where the root ends before.
+def mature_radii(model: Model, run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Times (h) of the last WINDOW_H and the radius (mm) just behind the growth zone, over a quarter of its length.
 
-    Only of tissue that has flowed through the growth zone since the start: tissue that was further than a radius
-    from the tip at the start and is still in the root is left out, as far as the closed form can tell.
+    Only of tissue that has flowed through the growth zone since the start: tissue that was beyond the zone's first
+    quarter at the start is left out, as far as the closed form can tell. Empty where the root ends before.
     """
     last = run.frame(-1)
     length = float(last["distance_to_tip"].max())
     zone = model.growth_zone(length)
-    tip_radius = float(np.max(radii(last, run.dimension, edges_of(length, length / 20.0))))
-    end = min(1.25 * zone, length, model.carried_to(tip_radius, float(run.times_h[-1]), length))
+    end = min(1.25 * zone, length, model.carried_to(0.25 * zone, float(run.times_h[-1]), length))
     if end <= zone:
-        return float("nan")
+        return np.empty(0), np.empty(0)
     window = np.array([zone, end])
-    return float(np.mean([radii(run.frame(i), run.dimension, window)[0] for i in run.window(WINDOW_H)]))
+    frames = run.window(WINDOW_H)
+    return run.times_h[frames], np.array([radii(run.frame(i), run.dimension, window)[0] for i in frames])
+
+
+def mature_radius(model: Model, run: Run) -> float:
+    """Mean of mature_radii (mm); NaN where there is none."""
+    radius = mature_radii(model, run)[1]
+    return float(np.mean(radius)) if radius.size else float("nan")
+
+
+def radius_drift(model: Model, run: Run) -> float:
+    """Relative change of mature_radii per hour (1/h), from the least-squares line; NaN below three frames."""
+    time, radius = mature_radii(model, run)
+    return float(np.polyfit(time, np.log(radius), 1)[0]) if radius.size > 2 else float("nan")
 
 
 def tip_speed(run: Run) -> float:
@@ -130,6 +142,22 @@ def tip_speed(run: Run) -> float:
     time, length = history["time_h"], history["length_mm"]
     inside = time >= time[-1] - min(WINDOW_H, (time[-1] - time[0]) / 3.0) - 1e-9
     return float(np.polyfit(time[inside], length[inside], 1)[0]) if np.count_nonzero(inside) > 1 else float("nan")
+
+
+def arresting_force(model: Model, run: Run) -> float:
+    """Axial force that stops growth (closed form; N, in 2D N/mm): p (1 - (dimension - 1) nu_A) times the section."""
+    frame = run.frame(0)
+    radius = float(np.max(radii(frame, run.dimension, np.linspace(0.0, float(frame["distance_to_tip"].max()), 21))))
+    section = 2.0 * radius if run.dimension == 2 else np.pi * radius**2
+    return model.p * (1.0 - (run.dimension - 1) * model.nu_A) * section
+
+
+def tip_angle(frame: Frame, dimension: int) -> float:
+    """Angle (rad) between the x axis and the material axis of the last 0.4 radii of the root."""
+    distance = frame["distance_to_tip"] - frame["distance_to_tip"].min()
+    reach = 0.4 * float(np.max(radii(frame, dimension, np.linspace(0.0, float(distance.max()), 21))))
+    axis = frame["axis"][distance <= reach].mean(axis=0)
+    return float(np.arctan2(np.hypot(axis[1], axis[2]), axis[0]))
 
 
 def cell_length_data() -> tuple[np.ndarray, np.ndarray, str]:
