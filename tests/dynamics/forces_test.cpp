@@ -283,9 +283,9 @@ TYPED_TEST(PairForces, NonAffineDisplacementCreepsWhereTissueGrows) {
   constexpr double dt = 1e-3;
   block.tissue.step_h = dt;
   block.tissue.material.rho0_ug_mm3 = 1000.0;
+  block.compute_forces({dt, dt});
   block.tissue.material.softening = &block.tissue.cells.template declare<double>({"softening", "ug/(mm^3 h)", ""},
                                                                                  on_division::recomputed<dim, double>);
-  block.compute_forces({dt, dt});
   const auto& lambda = *block.tissue.material.softening;
   for (double& value : block.tissue.material.softening->values()) value = block.random.uniform(0.0, 4e5);
   const PairList same_pairs = block.tissue.pairs;

@@ -226,6 +226,14 @@ TYPED_TEST(Effects, DivisionThresholdFollowsTheDistanceFromTheTip) {
   for (std::size_t i = 0; i < s.size(); ++i) EXPECT_EQ(this->tissue.cells.generation[i], s[i] < 1.0 / 30.0 ? 1 : 0);
 }
 
+/// Tells the solver that the root stretches at 0.4 /h everywhere.
+template <int Dim>
+void stretch_uniformly(Solver<Dim>& solver) {
+  std::vector<double> flow{0.0};
+  while (flow.size() < 100) flow.push_back(flow.back() + 0.4 * solver.axis().bin_mm());
+  solver.axis().set_flow(flow);
+}
+
 TYPED_TEST(Effects, DivisionEvensOutSpacingAlongTheRootOnly) {
   constexpr int dim = TypeParam::value;
   SolverOptions options;
@@ -247,9 +255,10 @@ TYPED_TEST(Effects, DivisionEvensOutSpacingAlongTheRootOnly) {
   for (std::size_t i = 0; i < cells.size(); ++i) cells.clamped[i] = layer_x[i] < -0.17;
   const std::vector<Vec<dim>> before = cells.position.values();
   running.axis().start(running.tissue());
+  stretch_uniformly(running);
   running.prepare();
   running.advance_window(5);
-  // both sides of a pair share its gap at a rate of 10 /h: 0.05 in a window of 0.005 h. The layer has a gap behind it
+  // both sides of a pair share its gap at 25 times the strain rate: 0.05 in a window of 0.005 h. The layer has a gap behind it
   // and an overlap before it, its neighbours have one of them
   double sum = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -279,6 +288,12 @@ TYPED_TEST(Effects, DivisionEvensOutSpacingOfFreeCellsOnly) {
   const std::vector<Vec<dim>> before = cells.position.values();
   running.axis().start(running.tissue());
   running.prepare();
+  running.advance_window(5);
+  // nothing stretches: nothing is moved
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    EXPECT_EQ(cells.position[i], before[static_cast<std::size_t>(cells.cell_id[i])]);
+  }
+  stretch_uniformly(running);
   running.advance_window(5);
   double most = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
