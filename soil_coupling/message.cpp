@@ -40,7 +40,7 @@ std::string describe_layout() {
   table("grains", grains_table);
   table("contacts", contacts_table);
   return nlohmann::ordered_json{{"magic", packet_magic},   {"version", protocol_version}, {"bytes", sizeof(Packet)},
-                                {"text_room", text_room}, {"packet", packet},            {"kinds", kinds},
+                                {"text_room", text_room}, {"progress_room", progress_room}, {"packet", packet},            {"kinds", kinds},
                                 {"tables", tables}}
       .dump();
 }

@@ -8,7 +8,9 @@
 //   byte 0       text, UTF-8: JSON, or what an error says                              text_bytes of at most text_room
 //   byte 65536   columns of the message's table, one after the other, each of `rows` rows and begun on a multiple of 64
 //
-// Whoever needs more room makes the block longer before it sends; the other side sees block_bytes and maps it anew.
+// Whoever needs more room makes the block longer before it sends; the other side sees block_bytes and maps it anew. Only
+// the text of `progress` follows its packet over the socket: nobody waits until it has been read, so that the block may
+// already hold the next one.
 #pragma once
 
 #include <array>
@@ -23,6 +25,7 @@ inline constexpr std::uint32_t packet_magic = 0x4C494F53;  // "SOIL"
 inline constexpr std::uint16_t protocol_version = 1;
 inline constexpr std::size_t text_room = 65536;
 inline constexpr std::size_t column_alignment = 64;
+inline constexpr std::size_t progress_room = 512;
 
 enum class Kind : std::uint16_t {
   // requests

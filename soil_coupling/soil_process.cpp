@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -118,7 +119,7 @@ double SoilProcess::patience_s(Kind kind) const {
   return std::max(p.step_at_least_s, p.step_medians * *middle);
 }
 
-Packet SoilProcess::receive(double patience_s, const std::string& doing) {
+SoilProcess::Received SoilProcess::receive(double patience_s, const std::string& doing) {
   const Clock::time_point start = Clock::now();
   while (true) {
     pollfd watched[2] = {{socket_.get(), POLLIN, 0}, {child_.watch(), POLLIN, 0}};
@@ -126,9 +127,14 @@ Packet SoilProcess::receive(double patience_s, const std::string& doing) {
     const int ready = poll(watched, 2, left_ms);
     if (ready < 0 && errno == EINTR) continue;
     if (watched[0].revents != 0) {
-      Packet packet;
-      const ssize_t got = recv(socket_.get(), &packet, sizeof(packet), MSG_DONTWAIT);
-      if (got == static_cast<ssize_t>(sizeof(packet))) return packet;
+      std::array<char, sizeof(Packet) + progress_room> message;
+      const ssize_t got = recv(socket_.get(), message.data(), message.size(), MSG_DONTWAIT);
+      if (got >= static_cast<ssize_t>(sizeof(Packet))) {
+        Received received;
+        std::memcpy(&received.packet, message.data(), sizeof(Packet));
+        received.passing_text.assign(message.data() + sizeof(Packet), static_cast<std::size_t>(got) - sizeof(Packet));
+        return received;
+      }
       if (got > 0) give_up(fmt::format("broke the protocol: a packet of {} bytes", got));
     }
     if (watched[0].revents != 0 || watched[1].revents != 0) {
@@ -163,7 +169,7 @@ Packet SoilProcess::ask(const Request& request) {
     give_up(fmt::format("can't be reached ({}) {}", std::strerror(error), doing));
   }
   while (true) {
-    const Packet answer = receive(patience, doing);
+    const auto [answer, passing_text] = receive(patience, doing);
     bool complete = false;
     try {
       complete = protocol_.accept(answer);
@@ -173,11 +179,11 @@ Packet SoilProcess::ask(const Request& request) {
       protocol_.fail();
       throw SoilError(fmt::format("{} ({}). {}", e.what(), doing, what_is_kept));
     }
-    const std::string text(text_of(answer));
     if (!complete) {
-      if (options_.progress) options_.progress(text);
+      if (options_.progress) options_.progress(passing_text);
       continue;
     }
+    const std::string text(text_of(answer));
     if (answer.kind == Kind::failed) give_up(fmt::format("reported an error {}: {}", doing, text));
     if (answer.kind == Kind::refused) {
       child_.kill();

@@ -52,14 +52,18 @@ class SoilProcess {
     std::int64_t interval = 0;
     double time_h = 0.0, duration_h = 0.0;
   };
-  /// Sends, waits for the answer and returns it. `columns_bytes` long the block must be. SoilError: the process died, is
+  /// Sends, waits for the answer and returns it; columns are in the block already. SoilError: the process died, is
   /// silent, broke the protocol or reported an error; InputError: it refuses what the user asked for.
   Packet ask(const Request& request);
 
   std::string_view text_of(const Packet& answer) const { return block_.text(answer.text_bytes); }
 
  private:
-  Packet receive(double patience_s, const std::string& doing);
+  struct Received {
+    Packet packet;
+    std::string passing_text;  ///< of `progress`
+  };
+  Received receive(double patience_s, const std::string& doing);
   double patience_s(Kind kind) const;
   [[noreturn]] void give_up(const std::string& what);
   std::string last_words() const;

@@ -18,6 +18,7 @@ MAGIC = 0x4C494F53
 VERSION = 1
 TEXT_ROOM = 65536
 ALIGNMENT = 64
+PROGRESS_ROOM = 512
 
 PACKET = struct.Struct("<IHHQQQQqdd")
 FIELDS = (
@@ -96,6 +97,7 @@ def describe_layout() -> str:
         "version": VERSION,
         "bytes": PACKET.size,
         "text_room": TEXT_ROOM,
+        "progress_room": PROGRESS_ROOM,
         "packet": offsets,
         "kinds": KINDS,
         "tables": tables,
@@ -163,8 +165,10 @@ class Channel:
 
     def answer(self, kind: str, text: str = "", rows: int = 0) -> None:
         """Answers the last request. A text that is too long keeps its end, where an error says what it is."""
-        encoded = text.encode()[-TEXT_ROOM:]
-        self._map[: len(encoded)] = encoded
+        passing = kind == "progress"
+        encoded = text.encode()[-(PROGRESS_ROOM if passing else TEXT_ROOM) :]
+        if not passing:
+            self._map[: len(encoded)] = encoded
         packet = replace(
             self._request,
             kind=KINDS[kind],
@@ -172,7 +176,7 @@ class Channel:
             text_bytes=len(encoded),
             rows=rows,
         )
-        self._socket.send(packet.bytes())
+        self._socket.send(packet.bytes() + (encoded if passing else b""))
 
     def _follow(self, size: int) -> None:
         if size > len(self._map):

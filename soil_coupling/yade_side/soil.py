@@ -418,6 +418,7 @@ class Soil:
         if lost.any():
             raise RuntimeError(f"{int(lost.sum())} of {len(soil)} grains have left the box; {RUPTURE}")
         numbers["soil_grains"] = float(len(soil))
+        numbers["soil_slots"] = float(len(O.bodies))
         numbers["soil_overlap_max"] = overlap
         numbers["soil_unbalanced"] = unbalanced if isfinite(unbalanced) else 0.0
         numbers["soil_force_balance"] = rest / total if total > 0.0 else 0.0
@@ -493,9 +494,11 @@ class Soil:
                 if i in number:
                     contacts[number[i]] += 1
 
-        def tensor(i: int) -> tuple[float, ...]:
-            s = stress[i]
-            return s[0][0], s[1][1], s[2][2], s[1][2], s[0][2], s[0][1]
+        def tensor(body: Any) -> tuple[float, ...]:
+            # YADE divides by the ball's volume; in a layer a grain is a disc
+            s = stress[body.id]
+            to_disc = 4.0 / 3.0 * body.shape.radius / self.recipe["layer_mm"] if self.recipe["dimension"] == 2 else 1.0
+            return tuple(to_disc * x for x in (s[0][0], s[1][1], s[2][2], s[1][2], s[0][2], s[0][1]))
 
         grain_columns = {
             "id": np.array([b.id for b in soil], np.int64),
@@ -503,7 +506,7 @@ class Soil:
             "velocity_mm_h": np.array([[*b.state.vel] for b in soil]).reshape(-1, 3),
             "radius_mm": np.array([b.shape.radius for b in soil]),
             "contacts": contacts,
-            "stress_MPa": np.array([tensor(b.id) for b in soil]).reshape(-1, 6),
+            "stress_MPa": np.array([tensor(b) for b in soil]).reshape(-1, 6),
         }
         contact_columns = {
             "ids": np.array(ids, np.int64).reshape(-1, 2),
