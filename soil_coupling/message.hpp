@@ -68,7 +68,7 @@ struct Column {
 inline constexpr std::array body_table{Column{"position_mm", "f8", 3}, Column{"radius_mm", "f8", 1}};
 inline constexpr std::array motion_table{Column{"id", "i8", 1}, Column{"start_mm", "f8", 3}, Column{"end_mm", "f8", 3},
                                          Column{"spin_per_h", "f8", 3}, Column{"radius_mm", "f8", 1}};
-inline constexpr std::array forces_table{Column{"mean_N", "f8", 3}, Column{"mean_torque_N_mm", "f8", 3},
+inline constexpr std::array forces_table{Column{"mean_N", "f8", 3}, Column{"mean_torque_Nmm", "f8", 3},
                                          Column{"contact_stiffness_N_mm", "f8", 1}};
 inline constexpr std::array grains_table{Column{"id", "i8", 1},          Column{"position_mm", "f8", 3},
                                          Column{"velocity_mm_h", "f8", 3}, Column{"radius_mm", "f8", 1},

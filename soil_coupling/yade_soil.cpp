@@ -74,6 +74,17 @@ YadeSoil::YadeSoil(const SoilRecipe& recipe, const SoilStart& start, const SoilP
   process_->ask({.kind = Kind::build, .text = task, .rows = rows});
 }
 
+std::vector<std::string> YadeSoil::number_names() const {
+  std::vector<std::string> names{"soil_inertial_number", "soil_substeps",       "soil_work_Nmm",    "soil_grains",
+                                 "soil_slots",           "soil_overlap_max",    "soil_unbalanced",  "soil_force_balance",
+                                 "soil_coordination",    "soil_solid_fraction", "soil_settled_unbalanced",
+                                 "soil_dem_s",           "soil_exchange_s",     "soil_obstacle_x_N", "soil_obstacle_y_N",
+                                 "soil_obstacle_z_N",    "soil_wall_x_from_N",  "soil_wall_x_to_N", "soil_wall_y_from_N",
+                                 "soil_wall_y_to_N"};
+  if (recipe_.dimension == 3) names.insert(names.end(), {"soil_wall_z_from_N", "soil_wall_z_to_N"});
+  return names;
+}
+
 SurfaceForces YadeSoil::advance(const SurfaceMotion& motion) {
   const std::size_t rows = motion.id.size();
   ROOTSOIL_ASSERT(motion.start_mm.size() == rows && motion.end_mm.size() == rows && motion.radius_mm.size() == rows);
@@ -109,13 +120,16 @@ SurfaceForces YadeSoil::advance(const SurfaceMotion& motion) {
   if (!all_finite(force) || !all_finite(torque) || !all_finite(stiffness)) wrong("a force is not finite");
   SurfaceForces forces;
   forces.mean_N = rows_of<3>(force);
-  forces.mean_torque_N_mm = rows_of<3>(torque);
+  forces.mean_torque_Nmm = rows_of<3>(torque);
   forces.contact_stiffness_N_mm.assign(stiffness.begin(), stiffness.end());
   const auto numbers = nlohmann::json::parse(process_->text_of(answer), nullptr, false);
   if (!numbers.is_object()) wrong("its numbers can't be read");
   for (const auto& [name, value] : numbers.items()) {
     if (!value.is_number()) wrong(name + " is not a number");
     forces.numbers[name] = value.get<double>();
+  }
+  for (const std::string& name : number_names()) {
+    if (!forces.numbers.contains(name)) wrong(name + " is missing");
   }
   return forces;
 }

@@ -17,6 +17,8 @@ class YadeSoil : public SoilPort {
   YadeSoil(const SoilRecipe& recipe, const SoilStart& start, const SoilProcessOptions& options);
 
   SurfaceForces advance(const SurfaceMotion& motion) override;
+  /// See yade_side/soil.py for what they mean; docs/soil.md explains them to users.
+  std::vector<std::string> number_names() const override;
   void save(const std::filesystem::path& file) override;
   void load(const std::filesystem::path& file) override;
   SoilSnapshot snapshot() override;

@@ -61,6 +61,19 @@ struct SoilRecipe {
   double layer_mm() const { return dimension == 2 ? d_mean_mm : 1.0; }
 };
 
+/// A probe that is pushed into the soil in the root's place, at a constant rate.
+struct Penetrometer {
+  double diameter_mm = 0.0;
+  double cone_angle_deg = 180.0;  ///< full angle of the tip; 180: round
+  double rate_mm_h = 0.0;
+  double depth_mm = 0.0;          ///< at the end
+  double average_from_mm = 0.0;   ///< Q is the mean from this depth on; 0: the last millimetre
+  double friction_deg = -1.0;     ///< below 0: root_friction_deg
+  std::int64_t seeds = 3;
+  double interval_h = 0.0;        ///< between two readings; 0: a hundredth of the diameter's time
+  std::optional<double> turgor_MPa;  ///< for the paper's p = turgor - Q/4
+};
+
 /// What a soil must know about the root before the first interval.
 struct SoilStart {
   double root_speed_mm_h = 0.0;     ///< expected; sets the grains' density where the recipe gives none

@@ -60,7 +60,7 @@ TABLES = {
         ("spin_per_h", "f8", 3),
         ("radius_mm", "f8", 1),
     ),
-    "forces": (("mean_N", "f8", 3), ("mean_torque_N_mm", "f8", 3), ("contact_stiffness_N_mm", "f8", 1)),
+    "forces": (("mean_N", "f8", 3), ("mean_torque_Nmm", "f8", 3), ("contact_stiffness_N_mm", "f8", 1)),
     "grains": (
         ("id", "i8", 1),
         ("position_mm", "f8", 3),

@@ -349,7 +349,7 @@ class Soil:
         n = len(ids)
         answer = forces()
         answer["mean_N"][:] = force[:n] / layer
-        answer["mean_torque_N_mm"][:] = torque[:n] / layer
+        answer["mean_torque_Nmm"][:] = torque[:n] / layer
         stiffness = answer["contact_stiffness_N_mm"]
         stiffness[:] = 0.0
         for k in np.flatnonzero(np.any(force[:n] != 0.0, axis=1)).tolist():
@@ -385,7 +385,7 @@ class Soil:
             rate * recipe["d_mean_mm"] * sqrt(density / pressure) if pressure > 0.0 else 0.0
         )
         numbers["soil_substeps"] = float(substeps)
-        numbers["soil_work_N_mm"] = self.work
+        numbers["soil_work_Nmm"] = self.work
         walls = 2 * recipe["dimension"]
         for k, name in enumerate(("x_from", "x_to", "y_from", "y_to", "z_from", "z_to")[:walls]):
             numbers[f"soil_wall_{name}_N"] = float(fixed[k, k // 2])

@@ -14,6 +14,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "soil_coupling" / "
 
 from message import KINDS, NAMES, Channel  # noqa: E402
 
+NUMBERS = [f"soil_wall_{axis}_{end}_N" for axis in "xy" for end in ("from", "to")]
+NUMBERS += [f"soil_obstacle_{axis}_N" for axis in "xyz"]
+NUMBERS += [f"soil_{name}" for name in ("inertial_number", "substeps", "work_Nmm", "grains", "slots", "overlap_max")]
+NUMBERS += [f"soil_{name}" for name in ("unbalanced", "force_balance", "coordination", "solid_fraction", "dem_s")]
+NUMBERS += ["soil_settled_unbalanced", "soil_exchange_s"]
+
 how = os.environ.get("FAKE_SOIL", "")
 channel = Channel(3, 4)
 while (request := channel.receive()) is not None:
@@ -56,11 +62,11 @@ while (request := channel.receive()) is not None:
         ids, radius = motion["id"].copy(), motion["radius_mm"].copy()
         forces = channel.columns("forces", rows)
         forces["mean_N"][:] = -moved
-        forces["mean_torque_N_mm"][:] = 0.0
+        forces["mean_torque_Nmm"][:] = 0.0
         forces["contact_stiffness_N_mm"][:] = ids + radius
         if later and how == "nan":
             forces["mean_N"][-1, 1] = float("nan")
-        numbers = {"soil_rows": float(rows)}
+        numbers = dict.fromkeys(NUMBERS, 0.0) | {"soil_rows": float(rows)}
         if later and how == "nan_number":
             numbers["soil_rows"] = float("nan")
         if later and how == "sequence":

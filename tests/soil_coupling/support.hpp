@@ -49,7 +49,7 @@ inline SoilRecipe listed_grains(const std::string& file) {
   r.d_spread = 1.0 / 6;
   r.grains_file = file;
   r.E_MPa = 300.0;
-  r.density_N_h2_mm4 = 1e-6;
+  r.density_N_h2_mm4 = 1e-4;
   return r;
 }
 
