@@ -143,6 +143,12 @@ Key<S> key(T S::*member, std::string name, std::string unit, Allowed allowed, st
   return k;
 }
 
+/// A member of a base as a member of the section that inherits it.
+template <class S, class T, class Base>
+T S::*member_of(T Base::*member) {
+  return member;
+}
+
 // ---- sections -------------------------------------------------------------------------------------
 
 // A section is a struct, an optional struct or a list of structs.
@@ -480,57 +486,58 @@ std::vector<SectionSpec> make_schema() {
   }));
 
   using So = SoilSection;
+  const auto soil_key = [](auto member, auto... rest) { return key(member_of<So>(member), std::move(rest)...); };
   t.push_back(section<So>("soil", optional, "Granular soil around the root, moved by YADE in a process of its own.",
                           [](auto& s) { return &s.soil; }, {
-    key(&So::soil_dimension, "dimension", "-", between(2, 3), "2: one layer of discs; 3: balls. The scene's.",
+    soil_key(&So::soil_dimension, "dimension", "-", between(2, 3), "2: one layer of discs; 3: balls. The scene's.",
         "docs/soil.md").defaults_to("scene.dimension").written_when([](const So&) { return false; }),
-    key(&So::box_from_mm, "box_from_mm", "mm", place_mm, "Corner of the box; the root enters through x = from.",
+    soil_key(&So::box_from_mm, "box_from_mm", "mm", place_mm, "Corner of the box; the root enters through x = from.",
         "docs/soil.md").required(),
-    key(&So::box_to_mm, "box_to_mm", "mm", place_mm, "Opposite corner; the root grows towards x = to.", "docs/soil.md")
+    soil_key(&So::box_to_mm, "box_to_mm", "mm", place_mm, "Opposite corner; the root grows towards x = to.", "docs/soil.md")
         .required(),
-    key(&So::walls, "walls", "-", one_of({"rigid", "servo", "mixed"}),
+    soil_key(&So::walls, "walls", "-", one_of({"rigid", "servo", "mixed"}),
         "rigid: all stand still; servo: all keep the pressure; mixed: servo, but the one at x = to stands still.",
         "docs/soil.md"),
-    key(&So::confining_pressure_MPa, "confining_pressure_MPa", "MPa", at_least(0).up_to(10, pascals),
+    soil_key(&So::confining_pressure_MPa, "confining_pressure_MPa", "MPa", at_least(0).up_to(10, pascals),
         "Pressure of packing and of servo walls.", "docs/soil.md").required(),
-    key(&So::d_range_mm, "d_range_mm", "mm", above(0).up_to(1e2, microns),
+    soil_key(&So::d_range_mm, "d_range_mm", "mm", above(0).up_to(1e2, microns),
         "Smallest and largest grain diameter, evenly spread; this or d_mean_mm.", "docs/soil.md"),
-    key(&So::d_mean_given_mm, "d_mean_mm", "mm", above(0).up_to(1e2, microns), "Mean grain diameter; this or d_range_mm.",
+    soil_key(&So::d_mean_given_mm, "d_mean_mm", "mm", above(0).up_to(1e2, microns), "Mean grain diameter; this or d_range_mm.",
         "docs/soil.md"),
-    key(&So::d_spread_given, "d_spread", "-", Limits{.low = 0, .high = 1, .high_open = true, .above_remedy = {}},
+    soil_key(&So::d_spread_given, "d_spread", "-", Limits{.low = 0, .high = 1, .high_open = true, .above_remedy = {}},
         "Diameters lie within d_mean (1 - spread) and d_mean (1 + spread).", "docs/soil.md")
         .only_with("d_mean_mm").defaults_to("0.2"),
-    key(&So::grains_file, "grains_file", "-", any_text,
+    soil_key(&So::grains_file, "grains_file", "-", any_text,
         "Grains from a CSV (x_mm, y_mm, z_mm, radius_mm) instead of packing.", "docs/soil.md"),
-    key(&So::contact_law, "contact_law", "-", one_of({"linear", "hertz_mindlin", "cohesive"}), "Law between bodies that touch.",
+    soil_key(&So::contact_law, "contact_law", "-", one_of({"linear", "hertz_mindlin", "cohesive"}), "Law between bodies that touch.",
         "docs/soil.md"),
-    key(&So::E_MPa, "E_MPa", "MPa", modulus, "Stiffness of the grains: 250 times the stress on the tip keeps overlaps small.",
+    soil_key(&So::E_MPa, "E_MPa", "MPa", modulus, "Stiffness of the grains: 250 times the stress on the tip keeps overlaps small.",
         "docs/soil.md").required(),
-    key(&So::poisson, "poisson", "-", Limits{.low = 0, .high = 0.5, .low_open = true, .above_remedy = {}},
+    soil_key(&So::poisson, "poisson", "-", Limits{.low = 0, .high = 0.5, .low_open = true, .above_remedy = {}},
         "linear, cohesive: tangential over normal stiffness; hertz_mindlin: Poisson's ratio.", "docs/soil.md"),
-    key(&So::friction_deg, "friction_deg", "deg", Limits{.low = 0, .high = 80, .above_remedy = "this is an angle, not a coefficient"},
+    soil_key(&So::friction_deg, "friction_deg", "deg", Limits{.low = 0, .high = 80, .above_remedy = "this is an angle, not a coefficient"},
         "Angle of friction between grains.", "docs/soil.md"),
-    key(&So::root_friction_deg, "root_friction_deg", "deg",
+    soil_key(&So::root_friction_deg, "root_friction_deg", "deg",
         Limits{.low = 0, .high = 80, .above_remedy = "this is an angle, not a coefficient"},
         "Between root and grains; the smaller of the two angles holds.", "docs/soil.md"),
-    key(&So::rolling, "rolling", "-", between(0, 5), "Rolling resistance: moment over normal force times radius.",
+    soil_key(&So::rolling, "rolling", "-", between(0, 5), "Rolling resistance: moment over normal force times radius.",
         "docs/soil.md"),
-    key(&So::cohesion_MPa, "cohesion_MPa", "MPa", at_least(0).up_to(1e3, pascals),
+    soil_key(&So::cohesion_MPa, "cohesion_MPa", "MPa", at_least(0).up_to(1e3, pascals),
         "Strength of bonds between grains that touch at the start.", "docs/soil.md").only_where("contact_law", {"cohesive"}),
-    key(&So::density_N_h2_mm4, "density_N_h2_mm4", "N h^2/mm^4", above(0),
+    soil_key(&So::density_N_h2_mm4, "density_N_h2_mm4", "N h^2/mm^4", above(0),
         "Of the grains, numerical; absent: from inertial_number_max and the root's expected speed.", "docs/soil.md")
         .defaults_to("from inertial_number_max"),
-    key(&So::inertial_number_max, "inertial_number_max", "-", above(0).up_to(1, {}),
+    soil_key(&So::inertial_number_max, "inertial_number_max", "-", above(0).up_to(1, {}),
         "Inertial number at the root's expected speed; soil is quasi-static up to 0.01.", "docs/soil.md")
         .only_without("density_N_h2_mm4"),
-    key(&So::porosity, "porosity", "-", inside(0, 1), "Wanted; absent: what compaction_friction_deg gives.", "docs/soil.md"),
-    key(&So::compaction_friction_deg, "compaction_friction_deg", "deg", between(0, 80),
+    soil_key(&So::porosity, "porosity", "-", inside(0, 1), "Wanted; absent: what compaction_friction_deg gives.", "docs/soil.md"),
+    soil_key(&So::compaction_friction_deg, "compaction_friction_deg", "deg", between(0, 80),
         "Angle of friction while packing: small packs densely.", "docs/soil.md").only_without("porosity"),
-    key(&So::seed, "seed", "-", at_least(1).up_to(2e9, {}), "Of the packing.", "docs/soil.md"),
-    key(&So::step_safety, "step_safety", "-", above(0).up_to(1, {}), "Substep over the P-wave step of the smallest grain.",
+    soil_key(&So::seed, "seed", "-", at_least(1).up_to(2e9, {}), "Of the packing.", "docs/soil.md"),
+    soil_key(&So::step_safety, "step_safety", "-", above(0).up_to(1, {}), "Substep over the P-wave step of the smallest grain.",
         "docs/soil.md"),
-    key(&So::damping, "damping", "-", between(0, 0.95), "YADE's local damping of the grains.", "docs/soil.md"),
-    key(&So::threads, "threads", "-", between(1, 256), "Of YADE; with more than one no two runs are bit-identical.",
+    soil_key(&So::damping, "damping", "-", between(0, 0.95), "YADE's local damping of the grains.", "docs/soil.md"),
+    soil_key(&So::threads, "threads", "-", between(1, 256), "Of YADE; with more than one no two runs are bit-identical.",
         "docs/soil.md"),
   }));
 
@@ -606,7 +613,7 @@ std::string number_text(double number) {
   return text;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -789,9 +796,9 @@ std::string toml_text(const Value& value) {
     std::string operator()(bool v) const { return v ? "true" : "false"; }
     std::string operator()(std::int64_t v) const { return fmt::format("{}", v); }
     std::string operator()(double v) const { return number_text(v); }
-    std::string operator()(const std::string& v) const { return quoted(v); }
+    std::string operator()(const std::string& v) const { return in_quotes(v); }
     std::string operator()(const Numbers& v) const { return list_text(v, number_text); }
-    std::string operator()(const Texts& v) const { return list_text(v, quoted); }
+    std::string operator()(const Texts& v) const { return list_text(v, in_quotes); }
     std::string operator()(const Rows& v) const {
       return list_text(v, [](const std::array<double, 2>& row) { return list_text(row, number_text); });
     }
