@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The command line. What the commands do is in root_sph/scene.
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>

@@ -67,14 +67,16 @@ void SharedBlock::follow(std::size_t bytes) {
   if (bytes == size_) return;
   struct stat info {};
   if (fstat(memory_.get(), &info) != 0 || bytes < size_ || static_cast<std::size_t>(info.st_size) < bytes) {
-    throw SoilError(fmt::format("the soil process broke the protocol: it speaks of {} bytes of shared memory, there are {}",
-                                bytes, info.st_size));
+    throw SoilError(
+        fmt::format("the soil process broke the protocol: it speaks of {} bytes of shared memory, there are {}", bytes,
+                    info.st_size));
   }
   map(bytes);
 }
 
 void SharedBlock::write_text(std::string_view text) {
-  if (text.size() > text_room) throw SoilError(fmt::format("a message of {} bytes is too long for the soil process", text.size()));
+  if (text.size() > text_room)
+    throw SoilError(fmt::format("a message of {} bytes is too long for the soil process", text.size()));
   std::memcpy(data_, text.data(), text.size());
 }
 

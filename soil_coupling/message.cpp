@@ -7,11 +7,16 @@ namespace rootsoil {
 
 std::string describe_layout() {
   nlohmann::ordered_json packet, kinds, tables;
-  packet = {{"magic", offsetof(Packet, magic)},           {"version", offsetof(Packet, version)},
-            {"kind", offsetof(Packet, kind)},             {"sequence", offsetof(Packet, sequence)},
-            {"block_bytes", offsetof(Packet, block_bytes)}, {"text_bytes", offsetof(Packet, text_bytes)},
-            {"rows", offsetof(Packet, rows)},             {"interval", offsetof(Packet, interval)},
-            {"time_h", offsetof(Packet, time_h)},         {"duration_h", offsetof(Packet, duration_h)}};
+  packet = {{"magic", offsetof(Packet, magic)},
+            {"version", offsetof(Packet, version)},
+            {"kind", offsetof(Packet, kind)},
+            {"sequence", offsetof(Packet, sequence)},
+            {"block_bytes", offsetof(Packet, block_bytes)},
+            {"text_bytes", offsetof(Packet, text_bytes)},
+            {"rows", offsetof(Packet, rows)},
+            {"interval", offsetof(Packet, interval)},
+            {"time_h", offsetof(Packet, time_h)},
+            {"duration_h", offsetof(Packet, duration_h)}};
   const auto kind = [&](const char* name, Kind value) { kinds[name] = static_cast<int>(value); };
   kind("hello", Kind::hello);
   kind("pack", Kind::pack);
@@ -39,8 +44,13 @@ std::string describe_layout() {
   table("forces", forces_table);
   table("grains", grains_table);
   table("contacts", contacts_table);
-  return nlohmann::ordered_json{{"magic", packet_magic},   {"version", protocol_version}, {"bytes", sizeof(Packet)},
-                                {"text_room", text_room}, {"progress_room", progress_room}, {"packet", packet},            {"kinds", kinds},
+  return nlohmann::ordered_json{{"magic", packet_magic},
+                                {"version", protocol_version},
+                                {"bytes", sizeof(Packet)},
+                                {"text_room", text_room},
+                                {"progress_room", progress_room},
+                                {"packet", packet},
+                                {"kinds", kinds},
                                 {"tables", tables}}
       .dump();
 }

@@ -8,9 +8,9 @@
 //   byte 0       text, UTF-8: JSON, or what an error says                              text_bytes of at most text_room
 //   byte 65536   columns of the message's table, one after the other, each of `rows` rows and begun on a multiple of 64
 //
-// Whoever needs more room makes the block longer before it sends; the other side sees block_bytes and maps it anew. Only
-// the text of `progress` follows its packet over the socket: nobody waits until it has been read, so that the block may
-// already hold the next one.
+// Whoever needs more room makes the block longer before it sends; the other side sees block_bytes and maps it anew.
+// Only the text of `progress` follows its packet over the socket: nobody waits until it has been read, so that the
+// block may already hold the next one.
 #pragma once
 
 #include <array>
@@ -70,9 +70,9 @@ inline constexpr std::array motion_table{Column{"id", "i8", 1}, Column{"start_mm
                                          Column{"spin_per_h", "f8", 3}, Column{"radius_mm", "f8", 1}};
 inline constexpr std::array forces_table{Column{"mean_N", "f8", 3}, Column{"mean_torque_Nmm", "f8", 3},
                                          Column{"contact_stiffness_N_mm", "f8", 1}};
-inline constexpr std::array grains_table{Column{"id", "i8", 1},          Column{"position_mm", "f8", 3},
-                                         Column{"velocity_mm_h", "f8", 3}, Column{"radius_mm", "f8", 1},
-                                         Column{"contacts", "i8", 1},    Column{"stress_MPa", "f8", 6}};
+inline constexpr std::array grains_table{
+    Column{"id", "i8", 1},        Column{"position_mm", "f8", 3}, Column{"velocity_mm_h", "f8", 3},
+    Column{"radius_mm", "f8", 1}, Column{"contacts", "i8", 1},    Column{"stress_MPa", "f8", 6}};
 inline constexpr std::array contacts_table{Column{"ids", "i8", 2}, Column{"position_mm", "f8", 3},
                                            Column{"force_N", "f8", 3}};
 

@@ -2,13 +2,13 @@
 #include "soil_coupling/penetrometer.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
 
@@ -55,7 +55,8 @@ void write_csv(const PenetrometerResult& result, const std::filesystem::path& pa
   std::ofstream file(path);
   file << "seed,depth_mm,Q_MPa,shaft_force_N,inertial_number,overlap_max\n";
   for (const PenetrometerReading& r : result.readings) {
-    file << fmt::format("{},{},{},{},{},{}\n", r.seed, r.depth_mm, r.Q_MPa, r.shaft_force_N, r.inertial_number, r.overlap_max);
+    file << fmt::format("{},{},{},{},{},{}\n", r.seed, r.depth_mm, r.Q_MPa, r.shaft_force_N, r.inertial_number,
+                        r.overlap_max);
   }
   if (!file.flush()) throw FileError(fmt::format("{}: can't be written; is the disk full?", path.string()));
 }
@@ -89,7 +90,8 @@ PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe
   PenetrometerResult result;
   const Rod rod = make_rod(probe, probe.depth_mm);
   const double area = section(probe, recipe.dimension);
-  const auto intervals = static_cast<std::int64_t>(std::ceil(probe.depth_mm / (probe.rate_mm_h * probe.interval_h) - 1e-9));
+  const auto intervals =
+      static_cast<std::int64_t>(std::ceil(probe.depth_mm / (probe.rate_mm_h * probe.interval_h) - 1e-9));
   const double step_mm = probe.depth_mm / static_cast<double>(intervals);
   std::vector<double> fluctuations, inertial_numbers;
   for (std::int64_t k = 0; k < probe.seeds; ++k) {
@@ -136,7 +138,8 @@ PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe
   return result;
 }
 
-int run_penetrometer(const SoilRecipe& recipe, const Penetrometer& probe, const std::filesystem::path& folder, bool quiet) {
+int run_penetrometer(const SoilRecipe& recipe, const Penetrometer& probe, const std::filesystem::path& folder,
+                     bool quiet) {
   const std::filesystem::path csv = folder / "penetrometer.csv", json = folder / "penetrometer.json";
   if (std::filesystem::exists(csv) || std::filesystem::exists(json)) {
     throw InputError({.file = {},
@@ -168,16 +171,19 @@ int run_penetrometer(const SoilRecipe& recipe, const Penetrometer& probe, const 
                                  {"cone_angle_deg", probe.cone_angle_deg},
                                  {"rate_mm_h", probe.rate_mm_h},
                                  {"averaged_mm", {probe.average_from_mm, probe.depth_mm}}};
-  fmt::print("Q = {:.4g} MPa, +- {:.2g} between {} seeds, +- {:.2g} along the way ({:.3g} to {:.3g} mm)\n", result.Q_MPa,
-             result.Q_deviation_MPa, probe.seeds, result.Q_fluctuation_MPa, probe.average_from_mm, probe.depth_mm);
+  fmt::print("Q = {:.4g} MPa, +- {:.2g} between {} seeds, +- {:.2g} along the way ({:.3g} to {:.3g} mm)\n",
+             result.Q_MPa, result.Q_deviation_MPa, probe.seeds, result.Q_fluctuation_MPa, probe.average_from_mm,
+             probe.depth_mm);
   fmt::print("Q/P = {:.3g} at P = {:.3g} MPa, inertial number {:.2g}\n", P > 0.0 ? result.Q_MPa / P : 0.0, P,
              result.inertial_number);
   if (probe.turgor_MPa) {
     const double p = *probe.turgor_MPa - 0.25 * result.Q_MPa;
     summary["turgor_MPa"] = *probe.turgor_MPa;
     summary["differential_MPa"] = p;
-    fmt::print("the paper's pressure differential p = turgor - Q/4 = {:.4g} MPa; a root may meet less friction, or more of Q: "
-               "compare with a run in [soil]\n", p);
+    fmt::print(
+        "the paper's pressure differential p = turgor - Q/4 = {:.4g} MPa; a root may meet less friction, or more of Q: "
+        "compare with a run in [soil]\n",
+        p);
   }
   std::ofstream file(json);
   file << summary.dump(2) << '\n';

@@ -40,18 +40,30 @@ std::string_view name_of(SoilState state) {
 
 std::string_view name_of(Kind kind) {
   switch (kind) {
-    case Kind::hello: return "hello";
-    case Kind::pack: return "pack";
-    case Kind::build: return "build";
-    case Kind::advance: return "advance";
-    case Kind::snapshot: return "snapshot";
-    case Kind::save: return "save";
-    case Kind::load: return "load";
-    case Kind::stop: return "stop";
-    case Kind::done: return "done";
-    case Kind::progress: return "progress";
-    case Kind::failed: return "failed";
-    case Kind::refused: return "refused";
+    case Kind::hello:
+      return "hello";
+    case Kind::pack:
+      return "pack";
+    case Kind::build:
+      return "build";
+    case Kind::advance:
+      return "advance";
+    case Kind::snapshot:
+      return "snapshot";
+    case Kind::save:
+      return "save";
+    case Kind::load:
+      return "load";
+    case Kind::stop:
+      return "stop";
+    case Kind::done:
+      return "done";
+    case Kind::progress:
+      return "progress";
+    case Kind::failed:
+      return "failed";
+    case Kind::refused:
+      return "refused";
   }
   return "unknown";
 }

@@ -2,6 +2,7 @@
 #include "soil_coupling/recipe_json.hpp"
 
 #include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 namespace rootsoil {
@@ -10,9 +11,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json obstacle_json(const SoilObstacle& o) {
-  return {{"name", o.name},           {"shape", o.shape},         {"position_mm", o.position_mm},
-          {"half_size_mm", o.half_size_mm}, {"length_mm", o.length_mm}, {"thickness_mm", o.thickness_mm},
-          {"angle_deg", o.angle_deg}, {"radius_mm", o.radius_mm}, {"movable", o.movable}};
+  return {{"name", o.name},
+          {"shape", o.shape},
+          {"position_mm", o.position_mm},
+          {"half_size_mm", o.half_size_mm},
+          {"length_mm", o.length_mm},
+          {"thickness_mm", o.thickness_mm},
+          {"angle_deg", o.angle_deg},
+          {"radius_mm", o.radius_mm},
+          {"movable", o.movable}};
 }
 
 /// A gap is carved when the soil is built; a sample does not know of it.
@@ -46,7 +53,7 @@ Json packing_json(const SoilRecipe& r) {
 }  // namespace
 
 std::string packing_key(const SoilRecipe& recipe) {
-  constexpr int packing_version = 1;  // raise it when packing.py packs differently
+  constexpr int packing_version = 2;  // raise it when packing.py packs differently
   Json key = packing_json(recipe);
   key["packing_version"] = packing_version;
   return key.dump();

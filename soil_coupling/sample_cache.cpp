@@ -2,9 +2,9 @@
 #include "soil_coupling/sample_cache.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "root_sph/core/errors.hpp"
 #include "soil_coupling/recipe_json.hpp"
@@ -29,7 +29,8 @@ fs::path ensure_sample(const SoilRecipe& recipe, const SoilProcessOptions& optio
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    throw FileError(fmt::format("{}: {}; set ROOTSOIL_CACHE to a folder for soil samples", folder.string(), error.message()));
+    throw FileError(
+        fmt::format("{}: {}; set ROOTSOIL_CACHE to a folder for soil samples", folder.string(), error.message()));
   }
   const fs::path sample = folder / ("sample_" + digest(packing_key(recipe)) + ".soil");
   if (fs::exists(sample)) return sample;
@@ -39,9 +40,10 @@ fs::path ensure_sample(const SoilRecipe& recipe, const SoilProcessOptions& optio
   if (options.progress) {
     const auto made = nlohmann::json::parse(process.text_of(answer), nullptr, false);
     if (made.is_object()) {
-      options.progress(fmt::format("packed {} grains of {:.3g} mm: porosity {:.3f}, {:.2f} contacts a grain; kept as {}",
-                                   made.value("grains", 0), made.value("d_mean_mm", 0.0), made.value("porosity", 0.0),
-                                   made.value("coordination", 0.0), sample.string()));
+      options.progress(
+          fmt::format("packed {} grains of {:.3g} mm: porosity {:.3f}, {:.2f} contacts a grain; kept as {}",
+                      made.value("grains", 0), made.value("d_mean_mm", 0.0), made.value("porosity", 0.0),
+                      made.value("coordination", 0.0), sample.string()));
     }
   }
   return sample;

@@ -9,7 +9,8 @@
 
 namespace rootsoil {
 
-/// $ROOTSOIL_CACHE, or rootsoil/soil in the user's cache folder ($XDG_CACHE_HOME, ~/.cache); without a home ./soil_cache.
+/// $ROOTSOIL_CACHE, or rootsoil/soil in the user's cache folder ($XDG_CACHE_HOME, ~/.cache); without a home
+/// ./soil_cache.
 std::filesystem::path sample_folder();
 
 /// The sample's file; packs it, in a process of its own, where it is not there yet.

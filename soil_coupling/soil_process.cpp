@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
@@ -14,6 +13,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "root_sph/core/errors.hpp"
 
@@ -46,27 +46,32 @@ ChildCommand command_of(const SoilProcessOptions& options, int socket, int block
 
 std::string describe(Kind kind) {
   switch (kind) {
-    case Kind::hello: return "while it started";
-    case Kind::pack: return "while it packed the sample";
-    case Kind::build: return "while it placed the root in the soil";
-    case Kind::save: return "while it saved the soil";
-    case Kind::load: return "while it loaded the soil";
-    case Kind::snapshot: return "while it listed the grains";
-    default: return "";
+    case Kind::hello:
+      return "while it started";
+    case Kind::pack:
+      return "while it packed the sample";
+    case Kind::build:
+      return "while it placed the root in the soil";
+    case Kind::save:
+      return "while it saved the soil";
+    case Kind::load:
+      return "while it loaded the soil";
+    case Kind::snapshot:
+      return "while it listed the grains";
+    default:
+      return "";
   }
 }
 
 constexpr const char* what_is_kept =
-    "Nothing of the interval counts; all frames and the last checkpoint that were written are kept, --resume goes on from "
+    "Nothing of the interval counts; all frames and the last checkpoint that were written are kept, --resume goes on "
+    "from "
     "there";
 
 }  // namespace
 
 SoilProcess::SoilProcess(const SoilProcessOptions& options)
-    : options_(options),
-      block_(text_room),
-      log_(open_log(options.log)),
-      child_([&] {
+    : options_(options), block_(text_room), log_(open_log(options.log)), child_([&] {
         std::tie(socket_, other_end_) = packet_socket_pair();
         return command_of(options_, other_end_.get(), block_.descriptor(), log_.get());
       }()) {

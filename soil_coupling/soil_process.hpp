@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The soil's process: starts the driver, asks and waits, and says in plain words what went wrong. Nothing here knows what
-// is asked for; yade_soil.hpp does.
+// The soil's process: starts the driver, asks and waits, and says in plain words what went wrong. Nothing here knows
+// what is asked for; yade_soil.hpp does.
 #pragma once
 
 #include <chrono>

@@ -2,10 +2,10 @@
 #include "soil_coupling/yade_soil.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "root_sph/core/errors.hpp"
 #include "soil_coupling/recipe_json.hpp"
@@ -42,14 +42,15 @@ bool all_finite(std::span<const double> numbers) {
 double grain_density_N_h2_mm4(const SoilRecipe& recipe, const SoilStart& start) {
   if (recipe.density_N_h2_mm4) return *recipe.density_N_h2_mm4;
   if (!(start.root_speed_mm_h > 0.0 && start.root_diameter_mm > 0.0 && recipe.confining_pressure_MPa > 0.0)) {
-    throw InputError({.file = {},
-                      .line = 0,
-                      .key = "soil.density_N_h2_mm4",
-                      .what = "the grains' density can't be derived: the root has no expected speed, or the soil no pressure",
-                      .given = fmt::format("speed {} mm/h, confining pressure {} MPa", start.root_speed_mm_h,
-                                           recipe.confining_pressure_MPa),
-                      .allowed = {},
-                      .remedy = "give soil.density_N_h2_mm4"});
+    throw InputError(
+        {.file = {},
+         .line = 0,
+         .key = "soil.density_N_h2_mm4",
+         .what = "the grains' density can't be derived: the root has no expected speed, or the soil no pressure",
+         .given = fmt::format("speed {} mm/h, confining pressure {} MPa", start.root_speed_mm_h,
+                              recipe.confining_pressure_MPa),
+         .allowed = {},
+         .remedy = "give soil.density_N_h2_mm4"});
   }
   return quasi_static_density_N_h2_mm4(recipe, start.root_speed_mm_h, start.root_diameter_mm);
 }
@@ -75,12 +76,12 @@ YadeSoil::YadeSoil(const SoilRecipe& recipe, const SoilStart& start, const SoilP
 }
 
 std::vector<std::string> YadeSoil::number_names() const {
-  std::vector<std::string> names{"soil_inertial_number", "soil_substeps",       "soil_work_Nmm",    "soil_grains",
-                                 "soil_slots",           "soil_overlap_max",    "soil_unbalanced",  "soil_force_balance",
-                                 "soil_coordination",    "soil_solid_fraction", "soil_settled_unbalanced",
-                                 "soil_dem_s",           "soil_exchange_s",     "soil_obstacle_x_N", "soil_obstacle_y_N",
-                                 "soil_obstacle_z_N",    "soil_wall_x_from_N",  "soil_wall_x_to_N", "soil_wall_y_from_N",
-                                 "soil_wall_y_to_N"};
+  std::vector<std::string> names{
+      "soil_inertial_number", "soil_substeps",       "soil_work_Nmm",           "soil_grains",
+      "soil_slots",           "soil_overlap_max",    "soil_unbalanced",         "soil_force_balance",
+      "soil_coordination",    "soil_solid_fraction", "soil_settled_unbalanced", "soil_dem_s",
+      "soil_exchange_s",      "soil_obstacle_x_N",   "soil_obstacle_y_N",       "soil_obstacle_z_N",
+      "soil_wall_x_from_N",   "soil_wall_x_to_N",    "soil_wall_y_from_N",      "soil_wall_y_to_N"};
   if (recipe_.dimension == 3) names.insert(names.end(), {"soil_wall_z_from_N", "soil_wall_z_to_N"});
   return names;
 }
@@ -108,8 +109,9 @@ SurfaceForces YadeSoil::advance(const SurfaceMotion& motion) {
                                        .time_h = motion.time_h,
                                        .duration_h = motion.duration_h});
   const auto wrong = [&](const std::string& what) {
-    throw SoilError(fmt::format("the soil's answer in interval {}, at {:.6g} h, can't be used: {}. The last checkpoint is kept",
-                                motion.interval, motion.time_h, what));
+    throw SoilError(
+        fmt::format("the soil's answer in interval {}, at {:.6g} h, can't be used: {}. The last checkpoint is kept",
+                    motion.interval, motion.time_h, what));
   };
   if (answer.rows != rows || answer.interval != motion.interval) {
     wrong(fmt::format("it has {} rows for interval {} instead of {}", answer.rows, answer.interval, rows));
@@ -160,7 +162,9 @@ SoilSnapshot YadeSoil::snapshot() {
     const std::span<const std::int64_t> column = block.column<std::int64_t>(grains_table, k, rows);
     return std::vector<std::int64_t>(column.begin(), column.end());
   };
-  const auto vectors = [&](std::size_t k) { return rows_of<3>(std::span<const double>(block.column<double>(grains_table, k, rows))); };
+  const auto vectors = [&](std::size_t k) {
+    return rows_of<3>(std::span<const double>(block.column<double>(grains_table, k, rows)));
+  };
   SoilSnapshot snapshot;
   snapshot.id = whole(0);
   snapshot.position_mm = vectors(1);
@@ -169,9 +173,12 @@ SoilSnapshot YadeSoil::snapshot() {
   snapshot.radius_mm.assign(radius.begin(), radius.end());
   snapshot.contacts = whole(4);
   snapshot.stress_MPa = rows_of<6>(std::span<const double>(block.column<double>(grains_table, 5, rows)));
-  snapshot.contact_ids = rows_of<2>(std::span<const std::int64_t>(block.column<std::int64_t>(contacts_table, 0, contacts, begin)));
-  snapshot.contact_position_mm = rows_of<3>(std::span<const double>(block.column<double>(contacts_table, 1, contacts, begin)));
-  snapshot.contact_force_N = rows_of<3>(std::span<const double>(block.column<double>(contacts_table, 2, contacts, begin)));
+  snapshot.contact_ids =
+      rows_of<2>(std::span<const std::int64_t>(block.column<std::int64_t>(contacts_table, 0, contacts, begin)));
+  snapshot.contact_position_mm =
+      rows_of<3>(std::span<const double>(block.column<double>(contacts_table, 1, contacts, begin)));
+  snapshot.contact_force_N =
+      rows_of<3>(std::span<const double>(block.column<double>(contacts_table, 2, contacts, begin)));
   return snapshot;
 }
 

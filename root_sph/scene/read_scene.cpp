@@ -359,7 +359,8 @@ class Reader {
 
 namespace {
 
-toml::table parse_table(std::string_view text, const std::string& file_name, const std::vector<std::string>& set_overrides) {
+toml::table parse_table(std::string_view text, const std::string& file_name,
+                        const std::vector<std::string>& set_overrides) {
   toml::table table;
   try {
     table = toml::parse(text, std::string_view(file_name));

@@ -8,8 +8,8 @@
 
 namespace rootsoil {
 
-/// Expected speed from the closed form, the root's diameter, and its cells as balls. A root that is not expected to grow
-/// has speed 0; then the scene must give the grains' density.
+/// Expected speed from the closed form, the root's diameter, and its cells as balls. A root that is not expected to
+/// grow has speed 0; then the scene must give the grains' density.
 template <int Dim>
 SoilStart soil_start(const Scene& scene, const Solver<Dim>& solver);
 

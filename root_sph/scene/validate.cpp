@@ -328,16 +328,20 @@ void complete_grains(SoilSection& soil, const Scene& scene, const Origins& origi
   for (int a = 0; a < soil.dimension; ++a) {
     const double side = soil.box_to_mm[a] - soil.box_from_mm[a];
     if (side < grains_across * soil.d_max_mm) {
-      origins.fail(size_key, fmt::format("the grains are too large for the box, which is {:.6g} mm long in {}", side, axis_name[a]),
-                   fmt::format("largest diameter {:.6g} mm", soil.d_max_mm), fmt::format("at most {:.6g} mm", side / grains_across),
-                   "take smaller grains or a larger box");
+      origins.fail(
+          size_key,
+          fmt::format("the grains are too large for the box, which is {:.6g} mm long in {}", side, axis_name[a]),
+          fmt::format("largest diameter {:.6g} mm", soil.d_max_mm),
+          fmt::format("at most {:.6g} mm", side / grains_across), "take smaller grains or a larger box");
     }
     grains *= side / soil.d_mean_mm;
   }
   constexpr double most_grains = 1e6;
   if (grains > most_grains && soil.grains_file.empty()) {
-    origins.fail(size_key, fmt::format("the box would hold some {:.0e} grains", grains), fmt::format("mean diameter {:.6g} mm", soil.d_mean_mm),
-                 fmt::format("at most {:.0e} grains", most_grains), "are all lengths in mm? Otherwise take larger grains or a smaller box");
+    origins.fail(size_key, fmt::format("the box would hold some {:.0e} grains", grains),
+                 fmt::format("mean diameter {:.6g} mm", soil.d_mean_mm),
+                 fmt::format("at most {:.0e} grains", most_grains),
+                 "are all lengths in mm? Otherwise take larger grains or a smaller box");
   }
   if (!soil.grains_file.empty()) {
     std::error_code error;
@@ -364,8 +368,10 @@ void check_packing(const SoilSection& soil, const Origins& origins) {
   }
   constexpr double softest = 20.0;
   if (soil.E_MPa < softest * soil.confining_pressure_MPa) {
-    origins.fail("soil.E_MPa", "the confining pressure would press the grains into each other", fmt::format("{}", soil.E_MPa),
-                 fmt::format("at least {} times confining_pressure_MPa = {:.6g}", softest, softest * soil.confining_pressure_MPa),
+    origins.fail("soil.E_MPa", "the confining pressure would press the grains into each other",
+                 fmt::format("{}", soil.E_MPa),
+                 fmt::format("at least {} times confining_pressure_MPa = {:.6g}", softest,
+                             softest * soil.confining_pressure_MPa),
                  "raise E_MPa: 250 times the stress on the tip is a good value");
   }
   const bool nothing_presses = !soil.grains_file.empty() && soil.walls == "rigid" && soil.density_N_h2_mm4;
@@ -395,8 +401,8 @@ void check_soil_obstacle(const SoilObstacle& o, std::size_t index, const Scene& 
   for (int a = 0; a < soil.dimension; ++a) {
     if (o.position_mm[a] > soil.box_from_mm[a] && o.position_mm[a] < soil.box_to_mm[a]) continue;
     origins.fail(element + ".position_mm", fmt::format("'{}' lies outside the soil's box in {}", o.name, axis_name[a]),
-                 fmt::format("{}", o.position_mm[a]),
-                 fmt::format("{} to {}", soil.box_from_mm[a], soil.box_to_mm[a]), "move it, or make the box larger");
+                 fmt::format("{}", o.position_mm[a]), fmt::format("{} to {}", soil.box_from_mm[a], soil.box_to_mm[a]),
+                 "move it, or make the box larger");
   }
   const RootSection& root = scene.root;
   if (o.shape == "gap" || !root.cells_file.empty() || root.curvature_per_mm != 0.0) return;  // the engine looks again
@@ -419,12 +425,14 @@ void check_room_for_root(const Scene& scene, const Origins& origins) {
   for (int a = 1; a < soil.dimension; ++a) {
     if (soil.box_from_mm[a] <= -needed && soil.box_to_mm[a] >= needed) continue;
     origins.fail(soil.box_from_mm[a] <= -needed ? "soil.box_to_mm" : "soil.box_from_mm",
-                 fmt::format("there is no room for the root, whose axis is {} = 0, and {} grains on either side", axis_name[a], grains_beside),
+                 fmt::format("there is no room for the root, whose axis is {} = 0, and {} grains on either side",
+                             axis_name[a], grains_beside),
                  fmt::format("{} from {} to {} mm", axis_name[a], soil.box_from_mm[a], soil.box_to_mm[a]),
                  fmt::format("from at most {:.6g} to at least {:.6g} mm", -needed, needed), "make the box wider");
   }
   if (root.length_mm + grains_beside * soil.d_max_mm > soil.box_to_mm[0]) {
-    origins.fail("soil.box_to_mm", "there is no room ahead of the root's tip", fmt::format("x to {} mm", soil.box_to_mm[0]),
+    origins.fail("soil.box_to_mm", "there is no room ahead of the root's tip",
+                 fmt::format("x to {} mm", soil.box_to_mm[0]),
                  fmt::format("above {:.6g} mm", root.length_mm + grains_beside * soil.d_max_mm),
                  "make the box longer; the root grows towards x = to");
   }
@@ -442,8 +450,9 @@ void complete_soil_alone(Scene& scene, const Origins& origins) {
   soil.dimension = dimension;
   for (int a = 0; a < dimension; ++a) {
     if (soil.box_from_mm[a] < soil.box_to_mm[a]) continue;
-    origins.fail("soil.box_to_mm", fmt::format("the box is empty in {}", axis_name[a]), fmt::format("{}", soil.box_to_mm[a]),
-                 fmt::format("above box_from_mm = {}", soil.box_from_mm[a]), "exchange or move the corners");
+    origins.fail("soil.box_to_mm", fmt::format("the box is empty in {}", axis_name[a]),
+                 fmt::format("{}", soil.box_to_mm[a]), fmt::format("above box_from_mm = {}", soil.box_from_mm[a]),
+                 "exchange or move the corners");
   }
   complete_grains(soil, scene, origins);
   check_packing(soil, origins);
@@ -465,19 +474,22 @@ void complete_penetrometer(Scene& scene, const Origins& origins) {
   constexpr double grains_ahead = 4.0;
   const double deepest = soil.box_to_mm[0] - soil.box_from_mm[0] - grains_ahead * soil.d_max_mm;
   if (probe.depth_mm > deepest) {
-    origins.fail("penetrometer.depth_mm", "the probe would meet the wall at the other end", fmt::format("{}", probe.depth_mm),
-                 fmt::format("at most {:.6g} mm: the box less {} grains", deepest, grains_ahead), "make the box longer");
+    origins.fail(
+        "penetrometer.depth_mm", "the probe would meet the wall at the other end", fmt::format("{}", probe.depth_mm),
+        fmt::format("at most {:.6g} mm: the box less {} grains", deepest, grains_ahead), "make the box longer");
   }
   for (int a = 1; a < soil.dimension; ++a) {
     const double widest = soil.box_to_mm[a] - soil.box_from_mm[a] - grains_ahead * soil.d_max_mm;
     if (probe.diameter_mm <= widest) continue;
-    origins.fail("penetrometer.diameter_mm", "the probe leaves no room for grains beside it", fmt::format("{}", probe.diameter_mm),
+    origins.fail("penetrometer.diameter_mm", "the probe leaves no room for grains beside it",
+                 fmt::format("{}", probe.diameter_mm),
                  fmt::format("at most {:.6g} mm: the box less {} grains", widest, grains_ahead), "make the box wider");
   }
   if (probe.average_from_mm == 0.0) probe.average_from_mm = std::max(probe.depth_mm - 1.0, 0.5 * probe.depth_mm);
   if (probe.average_from_mm >= probe.depth_mm) {
-    origins.fail("penetrometer.average_from_mm", "there is nothing to average", fmt::format("{}", probe.average_from_mm),
-                 fmt::format("below depth_mm = {}", probe.depth_mm), "average over 1 mm or more");
+    origins.fail("penetrometer.average_from_mm", "there is nothing to average",
+                 fmt::format("{}", probe.average_from_mm), fmt::format("below depth_mm = {}", probe.depth_mm),
+                 "average over 1 mm or more");
   }
   if (probe.friction_deg < 0.0) probe.friction_deg = soil.root_friction_deg;
   if (probe.interval_h == 0.0) probe.interval_h = 0.01 * probe.diameter_mm / probe.rate_mm_h;
@@ -537,9 +549,11 @@ void validate_and_complete(Scene& scene, const Origins& origins) {
 
 void validate_and_complete_soil(Scene& scene, const Origins& origins) {
   if (scene.scene.name.empty()) scene.scene.name = name_from_file(scene.file);
-  if (!scene.soil) origins.fail("", "section [soil] is missing", {}, {}, "add it; rootsoil describe soil lists its keys");
+  if (!scene.soil)
+    origins.fail("", "section [soil] is missing", {}, {}, "add it; rootsoil describe soil lists its keys");
   if (!scene.penetrometer) {
-    origins.fail("", "section [penetrometer] is missing", {}, {}, "add it; rootsoil describe penetrometer lists its keys");
+    origins.fail("", "section [penetrometer] is missing", {}, {},
+                 "add it; rootsoil describe penetrometer lists its keys");
   }
   complete_soil_alone(scene, origins);
   complete_penetrometer(scene, origins);

@@ -97,10 +97,14 @@ def contact_engines(recipe: dict[str, Any]) -> list[Any]:
         verletDist=0.15 * recipe["d_mean_mm"],
         avoidSelfInteractionMask=SELF,
     )
+    law = getattr(wrapper, names.law)()
+    if names is COHESION:
+        law.always_use_moment_law = recipe["rolling"] > 0.0  # otherwise only bonds resist rolling
+        law.useIncrementalForm = True
     loop = wrapper.InteractionLoop(
         [getattr(wrapper, names.sphere_sphere)(), getattr(wrapper, names.box_sphere)()],
         [getattr(wrapper, names.physics)()],
-        [getattr(wrapper, names.law)()],
+        [law],
     )
     return [collider, loop]
 

@@ -47,7 +47,8 @@ TEST(Rod, TheConeHasItsAngleAndIsSmooth) {
       EXPECT_NEAR(envelope_mm(rod, t), (t + cut) * tangent, 0.01 * 0.4) << angle_deg << " at " << t;
     }
     for (double t = shoulder; t < 2.0; t += 0.01) EXPECT_NEAR(envelope_mm(rod, t), 0.4, 2e-4);
-    EXPECT_NEAR(*std::min_element(rod.behind_mm.begin(), rod.behind_mm.end()), rod.radius_mm[0], 1e-12) << "its front is at 0";
+    EXPECT_NEAR(*std::min_element(rod.behind_mm.begin(), rod.behind_mm.end()), rod.radius_mm[0], 1e-12)
+        << "its front is at 0";
   }
 }
 

@@ -46,23 +46,18 @@ TEST_F(Process, ExchangesColumnsOfAnyLength) {
 }
 
 TEST_F(Process, SaysHowItEnded) {
-  const std::pair<const char*, const char*> cases[] = {{"kill", "was killed by signal 9"},
-                                                       {"crash", "was killed by signal 11"},
-                                                       {"exit", "ended with status 7"},
-                                                       {"throw", "ZeroDivisionError"},
-                                                       {"stop", "(it is stopped)"},
-                                                       {"late", "gave no answer for 0.5 s"},
-                                                       {"nan", "a force is not finite"},
-                                                       {"nan_number", "can't be read"},
-                                                       {"sequence", "an answer to message"},
-                                                       {"rows", "2 rows for interval 1 instead of 3"}};
+  const std::pair<const char*, const char*> cases[] = {
+      {"kill", "was killed by signal 9"},   {"crash", "was killed by signal 11"},
+      {"exit", "ended with status 7"},      {"throw", "ZeroDivisionError"},
+      {"stop", "(it is stopped)"},          {"late", "gave no answer for 0.5 s"},
+      {"nan", "a force is not finite"},     {"nan_number", "can't be read"},
+      {"sequence", "an answer to message"}, {"rows", "2 rows for interval 1 instead of 3"}};
   for (const auto& [how, words] : cases) {
     SCOPED_TRACE(how);
     YadeSoil s = soil(how);
     s.advance(test::row_of_markers(0, 3, 0, 0.1));
     const pid_t pid = s.process().pid();
-    const std::string text =
-        test::message_of<SoilError>([&] { s.advance(test::row_of_markers(1, 3, 0.1, 0.1)); });
+    const std::string text = test::message_of<SoilError>([&] { s.advance(test::row_of_markers(1, 3, 0.1, 0.1)); });
     EXPECT_THAT(text, AllOf(HasSubstr(words), HasSubstr("in interval 1"), HasSubstr("checkpoint")));
     if (std::string(how) == "kill") {
       EXPECT_THAT(text, HasSubstr("it said last:\ninterval 0\ninterval 1"));
@@ -79,7 +74,8 @@ TEST_F(Process, AFailureAtTheStartIsToldApart) {
               AllOf(HasSubstr("speaks version 99, this program version 1"), HasSubstr("while it started")));
   SoilProcessOptions options = fake("mute");
   options.patience.start_s = 0.3;
-  EXPECT_THAT(test::message_of<SoilError>([&] { SoilProcess p(options); }), HasSubstr("gave no answer for 0.3 s while it started"));
+  EXPECT_THAT(test::message_of<SoilError>([&] { SoilProcess p(options); }),
+              HasSubstr("gave no answer for 0.3 s while it started"));
   options.python = "/nowhere/python3";
   EXPECT_THAT(test::message_of<SoilError>([&] { SoilProcess p(options); }), HasSubstr("/nowhere/python3"));
 }

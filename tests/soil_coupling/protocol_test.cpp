@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The conversation alone, and the layout that both languages must share. No process but /usr/bin/python3 printing its view.
+// The conversation alone, and the layout that both languages must share. No process but /usr/bin/python3 printing its
+// view.
 #include "soil_coupling/protocol.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "root_sph/core/errors.hpp"
@@ -16,7 +17,8 @@
 namespace rootsoil {
 namespace {
 
-constexpr Kind requests[] = {Kind::hello, Kind::pack, Kind::build, Kind::advance, Kind::snapshot, Kind::save, Kind::load, Kind::stop};
+constexpr Kind requests[] = {Kind::hello,    Kind::pack, Kind::build, Kind::advance,
+                             Kind::snapshot, Kind::save, Kind::load,  Kind::stop};
 
 Packet answer_to(const Packet& request, Kind kind = Kind::done) {
   Packet answer = request;

@@ -17,11 +17,14 @@ constexpr double stone_radius_mm = 0.5, marker_radius_mm = 0.1;
 
 class Yade : public testing::Test {
  protected:
-  YadeSoil soil(const SoilRecipe& recipe, const SoilStart& start = test::start_of_root()) { return {recipe, start, options_}; }
+  YadeSoil soil(const SoilRecipe& recipe, const SoilStart& start = test::start_of_root()) {
+    return {recipe, start, options_};
+  }
 
   /// A fixed stone at the origin, and a grain in a corner, far from everything.
   SoilRecipe stone() {
-    SoilRecipe r = test::listed_grains(test::write(folder_ / "grains.csv", "x_mm,y_mm,z_mm,radius_mm\n1.5,1.5,0,0.15\n"));
+    SoilRecipe r =
+        test::listed_grains(test::write(folder_ / "grains.csv", "x_mm,y_mm,z_mm,radius_mm\n1.5,1.5,0,0.15\n"));
     r.obstacles.push_back({.name = "stone", .shape = "stone", .radius_mm = stone_radius_mm});
     return r;
   }
@@ -104,7 +107,9 @@ TEST_F(Yade, KilledStoppedOrThrowingIsASoilError) {
   };
   EXPECT_THAT(signalled(SIGKILL), HasSubstr("was killed by signal 9"));
   EXPECT_THAT(signalled(SIGSTOP), HasSubstr("(it is stopped)"));
-  EXPECT_THAT(after_one_interval([&](YadeSoil& s) { s.advance(move({-1, 0, 0}, {NAN, 0, 0})); }),
+  EXPECT_THAT(after_one_interval([&](YadeSoil& s) {
+                s.advance(move({-1, 0, 0}, {NAN, 0, 0}));
+              }),
               AllOf(HasSubstr("motion is not finite"), HasSubstr("--resume")));
 }
 
@@ -144,7 +149,8 @@ TEST_F(Yade, AMarkerSticksThenSlips) {
   s.advance(move({x - 0.01, 0, 0}, {x - 0.01, 0, 0}));
   s.advance(move({x - 0.01, 0, 0}, {x, 0, 0}));
   const double mu = std::tan(20.0 * M_PI / 180.0);
-  const double kn = 2 * r.E_MPa * stone_radius_mm * marker_radius_mm / (stone_radius_mm + marker_radius_mm) / r.layer_mm();
+  const double kn =
+      2 * r.E_MPa * stone_radius_mm * marker_radius_mm / (stone_radius_mm + marker_radius_mm) / r.layer_mm();
   double y = 0.0;
   const auto slide = [&](double way) {
     s.advance(move({x, y, 0}, {x, y + way, 0}));
@@ -259,7 +265,8 @@ TEST_F(Yade, APackedSampleIsAtRestUnderItsPressureAndKept) {
     SurfaceForces f;
     for (int k = 0; k < 3; ++k) f = s.advance(push(0.3, 0.0));
     const double side_mm = r.box_to_mm[0] - r.box_from_mm[0];
-    EXPECT_NEAR(f.numbers.at("soil_wall_y_to_N"), r.confining_pressure_MPa * side_mm, 0.05 * r.confining_pressure_MPa * side_mm);
+    EXPECT_NEAR(f.numbers.at("soil_wall_y_to_N"), r.confining_pressure_MPa * side_mm,
+                0.05 * r.confining_pressure_MPa * side_mm);
     EXPECT_LT(f.numbers.at("soil_force_balance"), 1e-12);
     EXPECT_LT(f.numbers.at("soil_unbalanced"), 0.05);
     const SoilSnapshot snapshot = s.snapshot();
@@ -283,9 +290,13 @@ TEST_F(Yade, APackedSampleIsAtRestUnderItsPressureAndKept) {
   EXPECT_EQ(ensure_sample(other, options_), sample) << "a sample does not know the root";
 
   std::filesystem::resize_file(sample, std::filesystem::file_size(sample) - 10);
-  EXPECT_THAT(test::message_of<InputError>([&] { soil(r); }), AllOf(HasSubstr("is damaged"), HasSubstr("delete the file"), HasSubstr(sample.string())));
-  test::write(sample, "rootsoil soil file\n{\"kind\":\"sample\",\"version\":0,\"engine\":\"2018.02b\",\"bytes\":0,\"sha256\":\"\"}\n");
-  EXPECT_THAT(test::message_of<InputError>([&] { soil(r); }), AllOf(HasSubstr("not a soil sample of this version"), HasSubstr("2018.02b")));
+  EXPECT_THAT(test::message_of<InputError>([&] { soil(r); }),
+              AllOf(HasSubstr("is damaged"), HasSubstr("delete the file"), HasSubstr(sample.string())));
+  test::write(
+      sample,
+      "rootsoil soil file\n{\"kind\":\"sample\",\"version\":0,\"engine\":\"2018.02b\",\"bytes\":0,\"sha256\":\"\"}\n");
+  EXPECT_THAT(test::message_of<InputError>([&] { soil(r); }),
+              AllOf(HasSubstr("not a soil sample of this version"), HasSubstr("2018.02b")));
 }
 
 TEST_F(Yade, TheDensityMakesTheSoilQuasiStatic) {
@@ -378,7 +389,9 @@ TEST_F(Yade, AnAbsurdMotionIsAnError) {
 
 TEST_F(Yade, ThereMustBeRoomForTheRoot) {
   YadeSoil s = soil(stone());
-  EXPECT_THAT(test::message_of<InputError>([&] { s.advance(move({-0.4, 0, 0}, {-0.4, 0, 0})); }),
+  EXPECT_THAT(test::message_of<InputError>([&] {
+                s.advance(move({-0.4, 0, 0}, {-0.4, 0, 0}));
+              }),
               HasSubstr("overlaps the obstacle 'stone'"));
 }
 
