@@ -64,9 +64,8 @@ std::string describe(Kind kind) {
 }
 
 constexpr const char* what_is_kept =
-    "Nothing of the interval counts; all frames and the last checkpoint that were written are kept, --resume goes on "
-    "from "
-    "there";
+    ". Nothing of the interval counts; all frames and the last checkpoint that were written are kept, --resume goes on "
+    "from there";
 
 }  // namespace
 
@@ -110,7 +109,7 @@ std::string SoilProcess::last_words() const {
 void SoilProcess::give_up(const std::string& what) {
   protocol_.fail();
   child_.kill();
-  throw SoilError(fmt::format("the soil process {}. {}{}", what, what_is_kept, last_words()));
+  throw SoilError(fmt::format("the soil process {}{}{}", what, intervals_ > 0 ? what_is_kept : "", last_words()));
 }
 
 double SoilProcess::patience_s(Kind kind) const {
@@ -160,6 +159,7 @@ Packet SoilProcess::ask(const Request& request) {
                                 : describe(request.kind);
   const double patience = patience_s(request.kind);
   const Clock::time_point start = Clock::now();
+  if (request.kind == Kind::advance) ++intervals_;
   block_.write_text(request.text);
   Packet packet = protocol_.begin(request.kind);
   packet.block_bytes = block_.size();
@@ -182,7 +182,7 @@ Packet SoilProcess::ask(const Request& request) {
     } catch (const SoilError& e) {
       child_.kill();
       protocol_.fail();
-      throw SoilError(fmt::format("{} ({}). {}", e.what(), doing, what_is_kept));
+      throw SoilError(fmt::format("{} ({}){}", e.what(), doing, intervals_ > 0 ? what_is_kept : ""));
     }
     if (!complete) {
       if (options_.progress) options_.progress(passing_text);

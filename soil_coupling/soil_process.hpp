@@ -78,6 +78,7 @@ class SoilProcess {
   std::string engine_version_;
   std::vector<double> step_s_;  ///< of the last steps
   std::size_t steps_ = 0;
+  std::int64_t intervals_ = 0;  ///< asked for
 };
 
 }  // namespace rootsoil

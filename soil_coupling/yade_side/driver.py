@@ -109,8 +109,12 @@ def main() -> int:
     except (BrokenPipeError, ConnectionResetError):
         return 0
     except BaseException as error:  # whatever it is: the other side must know
-        traceback.print_exc()
-        channel.answer("failed", f"{type(error).__name__}: {error}")
+        name = type(error).__name__
+        if name == "YadeMissing":  # engine.py can't be imported here, before it is asked for
+            channel.answer("failed", str(error))
+        else:
+            traceback.print_exc()
+            channel.answer("failed", f"{name}: {error}")
     return 1
 
 

@@ -51,7 +51,7 @@ def test_readings_are_told_apart_by_seed(tool: ModuleType, results: Path):
 
 def test_smoothing_keeps_a_straight_line(tool: ModuleType):
     depth = np.linspace(0, 1, 101)
-    inner = tool.smoothed(depth, 2 * depth, 0.1)[10:-10]
+    inner = tool.smoothed(depth, 2 * depth, 0.095)[10:-10]
     np.testing.assert_allclose(inner, 2 * depth[10:-10], atol=1e-12)
     assert tool.smoothed(depth, np.where(depth > 0.5, 1.0, 0.0), 0.2)[50] == pytest.approx(0.5, abs=0.03)
 
