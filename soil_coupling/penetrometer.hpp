@@ -18,7 +18,8 @@ struct Rod {
 };
 
 /// Balls t behind the apex of a cone of half angle a have the radius t sin a; the apex is rounded off by a ball of a
-/// tenth of the radius. Neighbours are closer than a fifth of their radius, so that grains slide as on a smooth rod.
+/// tenth of the radius, and the shoulder runs into the shaft without an edge. Neighbours are closer than a fifth of
+/// their radius, so that grains slide as on a smooth rod.
 Rod make_rod(const Penetrometer& probe, double length_mm);
 
 struct PenetrometerReading {

@@ -43,7 +43,10 @@ TEST(Rod, TheConeHasItsAngleAndIsSmooth) {
     const double tangent = std::tan(0.5 * angle_deg * M_PI / 180), sine = std::sin(0.5 * angle_deg * M_PI / 180);
     const double cut = 0.1 * 0.4 * (1 / sine - 1);  // by the rounded apex
     const double shoulder = rod.behind_mm[rod.tip - 1];
-    for (double t = 0.2 * shoulder; t < 0.7 * shoulder; t += 0.01) {
+    // a ball that touches the cone's flank does so cos^2 of its distance from the apex: the flank ends there, at both
+    // ends
+    const double flank = 1 - sine * sine, last = flank * 0.4 / sine - cut, first = flank * 0.04 / sine - cut;
+    for (double t = first + 0.01; t < last - 0.01; t += 0.005) {
       EXPECT_NEAR(envelope_mm(rod, t), (t + cut) * tangent, 0.01 * 0.4) << angle_deg << " at " << t;
     }
     for (double t = shoulder; t < 2.0; t += 0.01) EXPECT_NEAR(envelope_mm(rod, t), 0.4, 2e-4);
