@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The command line. What the commands do is in root_sph/scene.
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -19,6 +19,7 @@
 #include "root_sph/scene/commands.hpp"
 #include "root_sph/scene/read_scene.hpp"
 #include "root_sph/scene/schema.hpp"
+#include "soil_coupling/penetrometer.hpp"
 
 namespace {
 
@@ -84,6 +85,15 @@ int command_line(int argc, char** argv) {
   run->callback([&] {
     command = [&] {
       const Scene scene = read_scene(scene_file, overrides, accuracy);
+      if (scene.soil) {  // the coupled run takes its soil from make_yade_soil (soil_coupling/yade_soil.hpp)
+        throw InputError({.file = scene.file,
+                          .line = 0,
+                          .key = "soil",
+                          .what = "a run does not couple root and soil yet",
+                          .given = {},
+                          .allowed = {},
+                          .remedy = "remove [soil], or push a probe into it: rootsoil penetrometer"});
+      }
       if (options.out.empty()) options.out = std::filesystem::path("runs") / scene.scene.name;
       return run_scene(scene, options);
     };
@@ -109,6 +119,20 @@ int command_line(int argc, char** argv) {
   CLI::App* effects = app.add_subcommand("effects", "List every effect that a scene can call for");
   effects->add_flag("--json", json, "For programs");
   effects->callback([&] { command = [&] { return list_effects(json); }; });
+
+  CLI::App* penetrometer = app.add_subcommand("penetrometer", "Push a probe into the soil of a scene; needs YADE");
+  penetrometer->add_option("SOIL", scene_file, "Scene file (TOML) with [soil] and [penetrometer]")->required();
+  penetrometer->add_option("--out", options.out, "Folder of the results; otherwise runs/<scene name>_penetrometer");
+  penetrometer->add_option("--set", overrides, "section.key=value, replaces what the file says; can be repeated")
+      ->allow_extra_args(false);
+  penetrometer->add_flag("--quiet", options.quiet, "No progress");
+  penetrometer->callback([&] {
+    command = [&] {
+      const Scene scene = read_soil(scene_file, overrides);
+      if (options.out.empty()) options.out = std::filesystem::path("runs") / (scene.scene.name + "_penetrometer");
+      return run_penetrometer(*scene.soil, *scene.penetrometer, options.out, options.quiet);
+    };
+  });
 
   std::optional<std::string> section;
   CLI::App* describe_ = app.add_subcommand("describe", "Explain the keys of a scene file");

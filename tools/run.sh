@@ -28,5 +28,8 @@ if (($# > 0)) && [[ "$1" != -* ]]; then
   fi
 fi
 
+if [[ -f "$scene" ]] && grep --quiet '^ *\[soil\]' "$scene"; then
+  "$root/tools/setup.sh" --soil
+fi
 "$root/tools/build.sh"
 exec "$root/build/release/rootsoil" run "$scene" "$@"

@@ -1,13 +1,23 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs what rootsoil needs and this machine lacks, from Debian's own packages (Debian 12).
+# Installs what rootsoil needs and this machine lacks, from Debian's own packages (Debian 12). tools/setup.sh [--soil]
 # Says what and why. Does nothing, in a blink, when all is there.
 set -euo pipefail
 
-if [[ "${1:-}" == "-h" || "${1:-}" == "--help" ]]; then
-  echo "usage: tools/setup.sh    install the Debian packages that rootsoil needs and that are missing"
-  exit 0
-fi
+with_soil=false
+case "${1:-}" in
+  -h | --help)
+    echo "usage: tools/setup.sh [--soil]    install the Debian packages that rootsoil needs and that are missing"
+    echo "  --soil  also what only scenes with [soil], the penetrometer and their tests need: YADE"
+    exit 0
+    ;;
+  --soil) with_soil=true ;;
+  "") ;;
+  *)
+    echo "setup: unknown argument '$1' (allowed: --soil)" >&2
+    exit 2
+    ;;
+esac
 
 # The one list: package, then what it is for.
 packages="
@@ -22,12 +32,18 @@ libfmt-dev           formats messages
 libspdlog-dev        run.log
 nlohmann-json3-dev   summary.json
 libgtest-dev         tests
+libgmock-dev         tests: matchers
 libbenchmark-dev     benchmarks
 python3-h5py         tools: read run.h5
 python3-numpy        tools: arithmetic
 python3-matplotlib   tools: overview.png and the other figures
 python3-pytest       tools: tests
 "
+# A scene without [soil] starts no process and needs none of this.
+soil_packages="
+yade                 moves the grains of the soil, in a process of its own
+"
+if $with_soil; then packages+=${soil_packages#$'\n'}; fi
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   echo "setup: this is not a Debian system (no dpkg or apt-get). Install by other means:" >&2

@@ -24,6 +24,7 @@ for argument in "$@"; do
   esac
 done
 
+"$root/tools/setup.sh" --soil # the soil's tests run the real YADE
 "$root/tools/build.sh"
 export OMP_WAIT_POLICY=passive # two tests run at once: waiting threads must not take the other's core
 /usr/bin/python3 -m pytest -q -p no:cacheprovider --import-mode=importlib "${pytest_choice[@]}" "$root/tests"

@@ -51,6 +51,12 @@ class UnphysicalError : public Error {
   explicit UnphysicalError(const std::string& message) : Error(ExitStatus::unphysical, message) {}
 };
 
+/// The soil process failed, or broke the protocol.
+class SoilError : public Error {
+ public:
+  explicit SoilError(const std::string& message) : Error(ExitStatus::soil_failed, message) {}
+};
+
 class FileError : public Error {
  public:
   explicit FileError(const std::string& message) : Error(ExitStatus::file_trouble, message) {}

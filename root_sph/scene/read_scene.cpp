@@ -119,6 +119,17 @@ class Reader {
     return std::move(scene_);
   }
 
+  /// Sections of the root are left alone.
+  Scene read_soil() {
+    check_names(table_, {}, {});
+    if (table_.contains("scene")) read_keys(*find_section("scene"), 0, *table_.get_as<toml::table>("scene"), false);
+    for (const SectionSpec& section : schema()) {
+      if (section.name.starts_with("soil") || section.name == "penetrometer") read_section(section);
+    }
+    validate_and_complete_soil(scene_, origins_);
+    return std::move(scene_);
+  }
+
  private:
   Location location(const toml::node& node) const {
     const toml::source_region& region = node.source();
@@ -148,9 +159,6 @@ class Reader {
   }
 
   void check_section(const SectionSpec& section, const toml::node& node, const std::string& path) const {
-    if (section.kind == SectionKind::refused) {
-      fail(node, path, section.meaning, {}, {}, fmt::format("remove [{}] or use [pressure]", section.name));
-    }
     if (section.kind == SectionKind::repeated) {
       const toml::array* list = node.as_array();
       if (!list || !node.is_array_of_tables()) {
@@ -205,7 +213,7 @@ class Reader {
     }
   }
 
-  void read_keys(const SectionSpec& section, std::size_t index, const toml::table& table) {
+  void read_keys(const SectionSpec& section, std::size_t index, const toml::table& table, bool complete = true) {
     const auto read_key = [&](const KeySpec& key) {
       const toml::node* node = table.get(key.name);
       if (!node) return;
@@ -218,6 +226,7 @@ class Reader {
       scene_.numerics = preset(scene_.numerics.accuracy);
     }
     for (const KeySpec& key : section.keys) read_key(key);
+    if (!complete) return;
     for (const KeySpec& key : section.keys) check_presence(section, key, index);
   }
 
@@ -248,7 +257,7 @@ class Reader {
   /// Can only be told when [response.*], which comes last, has been read.
   void check_response_duplicates() const {
     for (const SectionSpec& section : schema()) {
-      if (section.kind == SectionKind::refused || section.count(scene_) == 0) continue;
+      if (section.count(scene_) == 0) continue;
       for (const KeySpec& key : section.keys) {
         if (key.response_section.empty()) continue;
         const std::string path = key_path(section, 0, key.name);
@@ -349,8 +358,10 @@ class Reader {
 
 }  // namespace
 
-Scene parse_scene(std::string_view text, std::string file_name, const std::vector<std::string>& set_overrides,
-                  const std::optional<std::string>& accuracy) {
+namespace {
+
+toml::table parse_table(std::string_view text, const std::string& file_name,
+                        const std::vector<std::string>& set_overrides) {
   toml::table table;
   try {
     table = toml::parse(text, std::string_view(file_name));
@@ -364,12 +375,10 @@ Scene parse_scene(std::string_view text, std::string file_name, const std::vecto
                       .remedy = "correct the line; https://toml.io describes the format"});
   }
   for (const std::string& entry : set_overrides) apply_override(table, entry, "from --set");
-  if (accuracy) apply_override(table, "numerics.accuracy=" + toml_text(Value(*accuracy)), "from --accuracy");
-  return Reader(table, std::move(file_name)).read();
+  return table;
 }
 
-Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& set_overrides,
-                 const std::optional<std::string>& accuracy) {
+std::string text_of_file(const std::filesystem::path& path) {
   const auto wrong = [&](const std::string& what, const std::string& remedy) {
     throw InputError(
         {.file = path.string(), .line = 0, .key = {}, .what = what, .given = {}, .allowed = {}, .remedy = remedy});
@@ -383,7 +392,30 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
   std::ostringstream text;
   if (stream) text << stream.rdbuf();
   if (!stream || stream.bad()) throw FileError(fmt::format("{}: cannot be read; check its permissions", path.string()));
-  return parse_scene(text.str(), path.string(), set_overrides, accuracy);
+  return text.str();
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, std::string file_name, const std::vector<std::string>& set_overrides,
+                  const std::optional<std::string>& accuracy) {
+  toml::table table = parse_table(text, file_name, set_overrides);
+  if (accuracy) apply_override(table, "numerics.accuracy=" + toml_text(Value(*accuracy)), "from --accuracy");
+  return Reader(table, std::move(file_name)).read();
+}
+
+Scene parse_soil(std::string_view text, std::string file_name, const std::vector<std::string>& set_overrides) {
+  const toml::table table = parse_table(text, file_name, set_overrides);
+  return Reader(table, std::move(file_name)).read_soil();
+}
+
+Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& set_overrides,
+                 const std::optional<std::string>& accuracy) {
+  return parse_scene(text_of_file(path), path.string(), set_overrides, accuracy);
+}
+
+Scene read_soil(const std::filesystem::path& path, const std::vector<std::string>& set_overrides) {
+  return parse_soil(text_of_file(path), path.string(), set_overrides);
 }
 
 }  // namespace rootsoil

@@ -21,4 +21,9 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
 Scene parse_scene(std::string_view text, std::string file_name, const std::vector<std::string>& set_overrides = {},
                   const std::optional<std::string>& accuracy = std::nullopt);
 
+/// Only [soil], [penetrometer] and the dimension and seed of [scene]; other sections are left alone, as long as their
+/// names and keys exist.
+Scene read_soil(const std::filesystem::path& path, const std::vector<std::string>& set_overrides = {});
+Scene parse_soil(std::string_view text, std::string file_name, const std::vector<std::string>& set_overrides = {});
+
 }  // namespace rootsoil

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "root_sph/exchange/soil_recipe.hpp"
 #include "root_sph/scene/origins.hpp"
 
 namespace rootsoil {
@@ -114,6 +115,28 @@ struct ProbeSection {
   std::optional<std::array<double, 2>> distance_to_tip_mm;    ///< bin
 };
 
+/// The soil that the root grows through: the recipe, as the engine takes it, and what the scene adds.
+struct SoilSection : SoilRecipe {
+  std::optional<std::array<double, 2>> d_range_mm;  ///< as given; after validation d_min_mm and d_max_mm
+  std::optional<double> d_mean_given_mm;            ///< idem
+  std::optional<double> d_spread_given;
+  std::int64_t soil_dimension = 0;                  ///< as given; 0: the scene's
+};
+
+/// How the root's surface and the soil exchange motion and forces.
+struct SoilContactSection {
+  double interval_h = 4e-3;                  ///< between two exchanges, rounded to whole windows
+  std::optional<double> marker_radius_mm;    ///< absent: one cell
+  double marker_spacing = 0.6;               ///< of the radius
+  double map_width_cells = 1.4;
+  double ramp_h = 0.2;                       ///< forces rise from nothing over this time
+  bool stiffness_predictor = false;          ///< for rigid walls
+  bool under_relaxation = false;             ///< Aitken's
+  std::optional<double> tip_length_mm;       ///< absent: a root's diameter
+};
+
+using PenetrometerSection = Penetrometer;
+
 struct NumericsSection {
   std::string accuracy = "balanced";  ///< preset: "fast" | "balanced" | "reference"
   std::optional<double> step_h;       ///< absent: chosen from the preset, see step_choice
@@ -149,6 +172,9 @@ struct Scene {
   std::optional<NonAffineControlSection> non_affine_control;
   std::vector<ObstacleSection> obstacles;
   std::vector<ProbeSection> probes;
+  std::optional<SoilSection> soil;
+  std::optional<SoilContactSection> soil_contact;  ///< there where the soil is
+  std::optional<PenetrometerSection> penetrometer;
   NumericsSection numerics;
   OutputSection output;
   std::string file;  ///< where it was read, for messages

@@ -71,13 +71,12 @@ enum class SectionKind {
   defaulted,  ///< always in effect, every key has a default
   optional,   ///< absent = the effect is absent
   repeated,   ///< [[name]]
-  refused,    ///< known, but not part of this build
 };
 
 struct SectionSpec {
   std::string name;  ///< dotted, e.g. "tissue.anisotropy"
   SectionKind kind = SectionKind::optional;
-  std::string meaning;  ///< of a refused section: why
+  std::string meaning;
   std::vector<KeySpec> keys;
   std::function<std::size_t(const Scene&)> count;  ///< 0 = absent; otherwise how many
   std::function<void(Scene&)> add;                 ///< makes it present, or appends one

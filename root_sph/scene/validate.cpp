@@ -294,6 +294,207 @@ void check_pressure(const PressureSection& pressure, const Origins& origins) {
   }
 }
 
+// ---- soil -----------------------------------------------------------------------------------------
+
+const char* const axis_name[] = {"x", "y", "z"};
+
+void complete_grains(SoilSection& soil, const Scene& scene, const Origins& origins) {
+  if (soil.d_range_mm && soil.d_mean_given_mm) {
+    origins.fail("soil.d_mean_mm", "d_mean_mm and d_range_mm exclude each other", {}, {}, "give one of them");
+  }
+  if (!soil.d_range_mm && !soil.d_mean_given_mm) {
+    origins.fail("soil", "the grains have no size", {}, {}, "give d_range_mm = [smallest, largest], or d_mean_mm");
+  }
+  if (soil.d_range_mm) {
+    soil.d_min_mm = (*soil.d_range_mm)[0];
+    soil.d_max_mm = (*soil.d_range_mm)[1];
+    if (soil.d_min_mm > soil.d_max_mm) {
+      origins.fail("soil.d_range_mm", "the smallest diameter is above the largest",
+                   toml_text(Numbers{soil.d_min_mm, soil.d_max_mm}), "[smallest, largest]", "exchange them");
+    }
+    soil.d_mean_mm = 0.5 * (soil.d_min_mm + soil.d_max_mm);
+    soil.d_spread = (soil.d_max_mm - soil.d_min_mm) / (soil.d_max_mm + soil.d_min_mm);
+  } else {
+    constexpr double usual_spread = 0.2;
+    soil.d_mean_mm = *soil.d_mean_given_mm;
+    if (!soil.d_spread_given) soil.d_spread_given = usual_spread;
+    soil.d_spread = *soil.d_spread_given;
+    soil.d_min_mm = soil.d_mean_mm * (1 - soil.d_spread);
+    soil.d_max_mm = soil.d_mean_mm * (1 + soil.d_spread);
+  }
+  const std::string size_key = soil.d_range_mm ? "soil.d_range_mm" : "soil.d_mean_mm";
+  constexpr double grains_across = 4.0;
+  double grains = soil.dimension == 2 ? 0.83 : 0.6;
+  for (int a = 0; a < soil.dimension; ++a) {
+    const double side = soil.box_to_mm[a] - soil.box_from_mm[a];
+    if (side < grains_across * soil.d_max_mm) {
+      origins.fail(
+          size_key,
+          fmt::format("the grains are too large for the box, which is {:.6g} mm long in {}", side, axis_name[a]),
+          fmt::format("largest diameter {:.6g} mm", soil.d_max_mm),
+          fmt::format("at most {:.6g} mm", side / grains_across), "take smaller grains or a larger box");
+    }
+    grains *= side / soil.d_mean_mm;
+  }
+  constexpr double most_grains = 1e6;
+  if (grains > most_grains && soil.grains_file.empty()) {
+    origins.fail(size_key, fmt::format("the box would hold some {:.0e} grains", grains),
+                 fmt::format("mean diameter {:.6g} mm", soil.d_mean_mm),
+                 fmt::format("at most {:.0e} grains", most_grains),
+                 "are all lengths in mm? Otherwise take larger grains or a smaller box");
+  }
+  if (!soil.grains_file.empty()) {
+    std::error_code error;
+    const fs::path path = fs::absolute(fs::path(scene.file).parent_path() / soil.grains_file, error).lexically_normal();
+    if (error || !fs::is_regular_file(path, error)) {
+      origins.fail("soil.grains_file", "there is no such file", toml_text(soil.grains_file), {},
+                   fmt::format("looked for {}; the path starts from the scene file's folder", path.string()));
+    }
+    soil.grains_file = path.string();
+  }
+}
+
+void check_packing(const SoilSection& soil, const Origins& origins) {
+  // solid fractions outside these have never been packed by growing grains between walls (docs/soil.md)
+  const auto [low, high] = soil.dimension == 2 ? std::pair(0.10, 0.30) : std::pair(0.30, 0.55);
+  if (soil.porosity && !(*soil.porosity >= low && *soil.porosity <= high)) {
+    origins.fail("soil.porosity", fmt::format("grains can't be packed like that in {} dimensions", soil.dimension),
+                 fmt::format("{}", *soil.porosity), fmt::format("{} to {}", low, high),
+                 "leave it out to take what compaction_friction_deg gives");
+  }
+  if (soil.rolling > 0 && soil.contact_law == "hertz_mindlin") {
+    origins.fail("soil.rolling", "hertz_mindlin has no rolling resistance here", fmt::format("{}", soil.rolling), "0",
+                 "take contact_law = \"linear\" or \"cohesive\"");
+  }
+  constexpr double softest = 20.0;
+  if (soil.E_MPa < softest * soil.confining_pressure_MPa) {
+    origins.fail("soil.E_MPa", "the confining pressure would press the grains into each other",
+                 fmt::format("{}", soil.E_MPa),
+                 fmt::format("at least {} times confining_pressure_MPa = {:.6g}", softest,
+                             softest * soil.confining_pressure_MPa),
+                 "raise E_MPa: 250 times the stress on the tip is a good value");
+  }
+  const bool nothing_presses = !soil.grains_file.empty() && soil.walls == "rigid" && soil.density_N_h2_mm4;
+  if (soil.confining_pressure_MPa == 0 && !nothing_presses) {
+    origins.fail("soil.confining_pressure_MPa", "without pressure there is nothing to pack by", "0", "above 0",
+                 "0 is allowed only with grains_file, walls = \"rigid\" and density_N_h2_mm4");
+  }
+}
+
+/// Distance of a point from the obstacle's surface, 0 inside. A clump counts as the ball around it.
+double distance_mm(const SoilObstacle& o, const std::array<double, 3>& point, int dimension) {
+  const double dx = point[0] - o.position_mm[0], dy = point[1] - o.position_mm[1];
+  const double dz = dimension == 3 ? point[2] - o.position_mm[2] : 0.0;
+  if (o.shape == "stone" || o.shape == "clump") return std::max(0.0, std::hypot(dx, dy, dz) - o.radius_mm);
+  const double angle = o.angle_deg * std::numbers::pi / 180;
+  const double u = std::cos(angle) * dx + std::sin(angle) * dy, v = -std::sin(angle) * dx + std::cos(angle) * dy;
+  const bool plate = o.shape == "plate";
+  const auto beyond = [](double at, double half) { return std::max(0.0, std::abs(at) - half); };
+  return std::hypot(beyond(u, plate ? o.length_mm / 2 : o.half_size_mm[0]),
+                    beyond(v, plate ? o.thickness_mm / 2 : o.half_size_mm[1]),
+                    dimension == 3 ? beyond(dz, plate ? o.length_mm / 2 : o.half_size_mm[2]) : 0.0);
+}
+
+void check_soil_obstacle(const SoilObstacle& o, std::size_t index, const Scene& scene, const Origins& origins) {
+  const SoilSection& soil = *scene.soil;
+  const std::string element = key_path(*find_section("soil.obstacle"), index);
+  for (int a = 0; a < soil.dimension; ++a) {
+    if (o.position_mm[a] > soil.box_from_mm[a] && o.position_mm[a] < soil.box_to_mm[a]) continue;
+    origins.fail(element + ".position_mm", fmt::format("'{}' lies outside the soil's box in {}", o.name, axis_name[a]),
+                 fmt::format("{}", o.position_mm[a]), fmt::format("{} to {}", soil.box_from_mm[a], soil.box_to_mm[a]),
+                 "move it, or make the box larger");
+  }
+  const RootSection& root = scene.root;
+  if (o.shape == "gap" || !root.cells_file.empty() || root.curvature_per_mm != 0.0) return;  // the engine looks again
+  constexpr int points = 200;
+  for (int k = 0; k <= points; ++k) {
+    const double x = (root.length_mm - root.radius_mm) * k / points;
+    if (distance_mm(o, {x, 0, 0}, soil.dimension) >= root.radius_mm) continue;
+    origins.fail(element + ".position_mm", fmt::format("the root overlaps '{}' at the start", o.name),
+                 fmt::format("at x = {:.3g} mm", x), "an obstacle that the root does not touch at the start",
+                 "move the obstacle, or make the root shorter");
+  }
+}
+
+void check_room_for_root(const Scene& scene, const Origins& origins) {
+  const SoilSection& soil = *scene.soil;
+  const RootSection& root = scene.root;
+  if (!root.cells_file.empty()) return;  // the engine looks when it places the root
+  constexpr double grains_beside = 2.0;
+  const double needed = root.radius_mm + grains_beside * soil.d_max_mm;
+  for (int a = 1; a < soil.dimension; ++a) {
+    if (soil.box_from_mm[a] <= -needed && soil.box_to_mm[a] >= needed) continue;
+    origins.fail(soil.box_from_mm[a] <= -needed ? "soil.box_to_mm" : "soil.box_from_mm",
+                 fmt::format("there is no room for the root, whose axis is {} = 0, and {} grains on either side",
+                             axis_name[a], grains_beside),
+                 fmt::format("{} from {} to {} mm", axis_name[a], soil.box_from_mm[a], soil.box_to_mm[a]),
+                 fmt::format("from at most {:.6g} to at least {:.6g} mm", -needed, needed), "make the box wider");
+  }
+  if (root.length_mm + grains_beside * soil.d_max_mm > soil.box_to_mm[0]) {
+    origins.fail("soil.box_to_mm", "there is no room ahead of the root's tip",
+                 fmt::format("x to {} mm", soil.box_to_mm[0]),
+                 fmt::format("above {:.6g} mm", root.length_mm + grains_beside * soil.d_max_mm),
+                 "make the box longer; the root grows towards x = to");
+  }
+}
+
+/// Everything about the soil that does not depend on the root.
+void complete_soil_alone(Scene& scene, const Origins& origins) {
+  SoilSection& soil = *scene.soil;
+  const int dimension = scene.scene.dimension;
+  if (soil.soil_dimension != 0 && soil.soil_dimension != dimension) {
+    origins.fail("soil.dimension", fmt::format("a {}D root can't grow in a {}D soil", dimension, soil.soil_dimension),
+                 fmt::format("{}", soil.soil_dimension), fmt::format("{}, as scene.dimension", dimension),
+                 "leave it out, or change scene.dimension");
+  }
+  soil.dimension = dimension;
+  for (int a = 0; a < dimension; ++a) {
+    if (soil.box_from_mm[a] < soil.box_to_mm[a]) continue;
+    origins.fail("soil.box_to_mm", fmt::format("the box is empty in {}", axis_name[a]),
+                 fmt::format("{}", soil.box_to_mm[a]), fmt::format("above box_from_mm = {}", soil.box_from_mm[a]),
+                 "exchange or move the corners");
+  }
+  complete_grains(soil, scene, origins);
+  check_packing(soil, origins);
+  complete_names(soil.obstacles, "soil.obstacle", origins);
+  if (!scene.soil_contact) scene.soil_contact.emplace();
+}
+
+void check_soil(const Scene& scene, const Origins& origins) {
+  check_room_for_root(scene, origins);
+  for (std::size_t i = 0; i < scene.soil->obstacles.size(); ++i) {
+    check_soil_obstacle(scene.soil->obstacles[i], i, scene, origins);
+  }
+}
+
+void complete_penetrometer(Scene& scene, const Origins& origins) {
+  PenetrometerSection& probe = *scene.penetrometer;
+  if (!scene.soil) origins.fail("penetrometer", "there is no soil to push the probe into", {}, {}, "add [soil]");
+  const SoilSection& soil = *scene.soil;
+  constexpr double grains_ahead = 4.0;
+  const double deepest = soil.box_to_mm[0] - soil.box_from_mm[0] - grains_ahead * soil.d_max_mm;
+  if (probe.depth_mm > deepest) {
+    origins.fail(
+        "penetrometer.depth_mm", "the probe would meet the wall at the other end", fmt::format("{}", probe.depth_mm),
+        fmt::format("at most {:.6g} mm: the box less {} grains", deepest, grains_ahead), "make the box longer");
+  }
+  for (int a = 1; a < soil.dimension; ++a) {
+    const double widest = soil.box_to_mm[a] - soil.box_from_mm[a] - grains_ahead * soil.d_max_mm;
+    if (probe.diameter_mm <= widest) continue;
+    origins.fail("penetrometer.diameter_mm", "the probe leaves no room for grains beside it",
+                 fmt::format("{}", probe.diameter_mm),
+                 fmt::format("at most {:.6g} mm: the box less {} grains", widest, grains_ahead), "make the box wider");
+  }
+  if (probe.average_from_mm == 0.0) probe.average_from_mm = std::max(probe.depth_mm - 1.0, 0.5 * probe.depth_mm);
+  if (probe.average_from_mm >= probe.depth_mm) {
+    origins.fail("penetrometer.average_from_mm", "there is nothing to average",
+                 fmt::format("{}", probe.average_from_mm), fmt::format("below depth_mm = {}", probe.depth_mm),
+                 "average over 1 mm or more");
+  }
+  if (probe.friction_deg < 0.0) probe.friction_deg = soil.root_friction_deg;
+  if (probe.interval_h == 0.0) probe.interval_h = 0.01 * probe.diameter_mm / probe.rate_mm_h;
+}
+
 void complete_output(Scene& scene, const Origins& origins) {
   OutputSection& output = scene.output;
   if (output.every_h > scene.scene.duration_h) {
@@ -324,7 +525,22 @@ void validate_and_complete(Scene& scene, const Origins& origins) {
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) complete_obstacle(scene.obstacles[i], i, scene, origins);
   complete_names(scene.probes, "probe", origins);
   for (std::size_t i = 0; i < scene.probes.size(); ++i) check_probe(scene.probes[i], i, origins);
+  if (scene.soil) complete_soil_alone(scene, origins);
+  if (scene.soil) check_soil(scene, origins);
+  if (scene.penetrometer) complete_penetrometer(scene, origins);
   complete_output(scene, origins);
+}
+
+void validate_and_complete_soil(Scene& scene, const Origins& origins) {
+  if (scene.scene.name.empty()) scene.scene.name = name_from_file(scene.file);
+  if (!scene.soil)
+    origins.fail("", "section [soil] is missing", {}, {}, "add it; rootsoil describe soil lists its keys");
+  if (!scene.penetrometer) {
+    origins.fail("", "section [penetrometer] is missing", {}, {},
+                 "add it; rootsoil describe penetrometer lists its keys");
+  }
+  complete_soil_alone(scene, origins);
+  complete_penetrometer(scene, origins);
 }
 
 }  // namespace rootsoil

@@ -10,4 +10,7 @@ namespace rootsoil {
 /// Throws InputError, or leaves a scene in which every value that others define is filled in.
 void validate_and_complete(Scene& scene, const Origins& origins);
 
+/// The same for a scene of which only the soil and the penetrometer count: there need not be a root.
+void validate_and_complete_soil(Scene& scene, const Origins& origins);
+
 }  // namespace rootsoil

@@ -21,9 +21,10 @@ ARROWS = {
     "tissue": {"core"},
     "profiles": {"core"},
     "dynamics": BASIS,
-    "effects": BASIS | {"dynamics"},
+    "exchange": {"core", "kernels", "neighbours"},
+    "effects": BASIS | {"dynamics", "exchange"},
     "io": {"core"},
-    "scene": BASIS | {"dynamics", "effects", "io"},
+    "scene": BASIS | {"dynamics", "exchange", "effects", "io"},
 }
 # header: who may include it although no arrow leads there
 EXCEPTIONS = {"io/frame.hpp": {"effects"}}
@@ -114,6 +115,14 @@ def test_the_root_does_not_know_the_soil():
         assert "soil_coupling" not in "".join(re.findall(r"^#include.*", file.read_text(), re.M)), file
 
 
+def test_the_soil_knows_little_of_the_root():
+    """soil_coupling includes the core and the port between root and soil, nothing else of root_sph."""
+    folder = PROJECT / "soil_coupling"
+    assert any(includes(file) for file in sources(folder))
+    for file in sources(folder):
+        assert {header.split("/")[0] for header in includes(file)} <= {"core", "exchange"}, file
+
+
 def test_scenarios_only_start():
     """The program includes the scene module and the errors that it reports, nothing deeper."""
     for file in sources(PROJECT / "scenarios"):
@@ -136,12 +145,17 @@ def project_files() -> list[Path]:
 WITH_LICENCE = {".hpp", ".cpp", ".py", ".sh", ".toml", ".md", ".cmake", ".txt", ".ini", ".yml"}
 
 
+def licence_of(file: Path) -> str:
+    """What imports YADE, which is under the GPL 2, is under a licence that agrees with it."""
+    return "GPL-2.0-or-later" if "yade_side" in file.parts else "MIT"
+
+
 def test_licence():
     """Every source file says its licence in its first lines."""
     for file in project_files():
         if file.suffix in WITH_LICENCE and "corpus" not in file.parts:
             head = file.read_text().splitlines()[:3]
-            assert any("SPDX-License-Identifier: MIT" in line for line in head), file
+            assert any(f"SPDX-License-Identifier: {licence_of(file)}" in line for line in head), file
 
 
 def test_no_place_of_our_own():

@@ -108,6 +108,67 @@ position_mm = [0.1, 0, 0]
 name = "zone"
 distance_to_tip_mm = [0.2, 0.3]
 
+[soil]
+box_from_mm = [0.02, -2, -2.5]
+box_to_mm = [4, 2, 2.5]
+walls = "servo"
+confining_pressure_MPa = 0.1
+d_mean_mm = 0.2
+d_spread = 0.3
+contact_law = "cohesive"
+E_MPa = 300
+poisson = 0.25
+friction_deg = 28
+root_friction_deg = 12
+rolling = 0.1
+cohesion_MPa = 0.01
+density_N_h2_mm4 = 1e-4
+porosity = 0.4
+seed = 3
+step_safety = 0.4
+damping = 0.2
+threads = 2
+
+[[soil.obstacle]]
+name = "block"
+shape = "box"
+position_mm = [2, 0.5, 0]
+half_size_mm = [0.1, 0.2, 0.3]
+angle_deg = 30
+
+[[soil.obstacle]]
+shape = "plate"
+position_mm = [3, 0, 0]
+length_mm = 1
+thickness_mm = 0.05
+
+[[soil.obstacle]]
+shape = "stone"
+position_mm = [2, -1, 0]
+radius_mm = 0.4
+movable = true
+
+[soil.contact]
+interval_h = 3e-3
+marker_radius_mm = 0.02
+marker_spacing = 0.5
+map_width_cells = 1.6
+ramp_h = 0.1
+stiffness_predictor = true
+under_relaxation = true
+tip_length_mm = 0.2
+
+[penetrometer]
+diameter_mm = 0.5
+cone_angle_deg = 60
+rate_mm_h = 0.4
+depth_mm = 2
+average_from_mm = 1.5
+friction_deg = 10
+seeds = 2
+interval_h = 0.01
+turgor_MPa = 1
+
 [numerics]
 accuracy = "reference"
 step_h = 3e-4
@@ -182,6 +243,42 @@ TEST(Scene, EverythingIsRead) {
   EXPECT_EQ(s.output.fields.at(1), "stress");
 }
 
+TEST(Scene, TheSoilIsCompleted) {
+  const Scene s = parse(minimal + soil + stone + penetrometer);
+  ASSERT_TRUE(s.soil && s.soil_contact && s.penetrometer);
+  EXPECT_EQ(s.soil->dimension, 2);
+  EXPECT_DOUBLE_EQ(s.soil->d_mean_mm, 0.1);
+  EXPECT_DOUBLE_EQ(s.soil->d_spread, 0.2);
+  EXPECT_DOUBLE_EQ(s.soil->layer_mm(), 0.1);
+  EXPECT_EQ(s.soil->obstacles.at(0).name, "soil.obstacle_1");
+  EXPECT_EQ(s.soil->walls, "mixed");
+  EXPECT_DOUBLE_EQ(s.penetrometer->average_from_mm, 0.6);
+  EXPECT_DOUBLE_EQ(s.penetrometer->interval_h, 0.01);
+  EXPECT_DOUBLE_EQ(s.penetrometer->friction_deg, s.soil->root_friction_deg);
+  const Scene by_mean = parse(minimal + replaced(soil, "d_range_mm = [0.08, 0.12]", "d_mean_mm = 0.1"));
+  EXPECT_DOUBLE_EQ(by_mean.soil->d_max_mm, 0.12);
+  EXPECT_EQ(parse(everything).soil->layer_mm(), 1.0);
+}
+
+TEST(Scene, APenetrometerNeedsNoRoot) {
+  const Scene s = parse_soil("[scene]\nseed = 4\n" + soil + penetrometer, "a/clay.toml");
+  EXPECT_EQ(s.scene.name, "clay");
+  EXPECT_EQ(s.soil->dimension, 2);
+  EXPECT_NO_THROW(parse_soil(minimal + soil + penetrometer, "a/clay.toml"));
+  EXPECT_THROW(parse_soil(soil, "a/clay.toml"), InputError);
+  EXPECT_THROW(parse_soil(soil + penetrometer + "[growht]\n", "a/clay.toml"), InputError);
+}
+
+/// I = rate d sqrt(rho/P); the example of docs/soil.md: 0.5 mm/h, 0.8 mm, d = 0.2 mm, P = 0.1 MPa, I = 0.01.
+TEST(Scene, TheInertialNumberGivesTheDensity) {
+  SoilRecipe r;
+  r.d_mean_mm = 0.2;
+  r.confining_pressure_MPa = 0.1;
+  EXPECT_NEAR(quasi_static_density_N_h2_mm4(r, 0.5, 0.8), 6.4e-4, 1e-12);
+  r.inertial_number_max = 1e-3;
+  EXPECT_NEAR(quasi_static_density_N_h2_mm4(r, 0.5, 0.8), 6.4e-6, 1e-14);
+}
+
 TEST(Scene, PlanesHaveUnitNormalsTowardsTheRoot) {
   const Scene s = parse(everything);
   const double length = std::hypot(3, 1, 0.5);
@@ -204,7 +301,10 @@ TEST(Scene, EveryKeyIsWrittenUnlessItMeansNothing) {
   const Scene scene = parse(everything);
   const std::string resolved = resolved_toml(scene);
   // the only keys that this scene has no place for
-  const std::set<std::string> left_out = {"root.cells_file", "root.tip_axis", "pressure.differential_MPa"};
+  const std::set<std::string> left_out = {"root.cells_file",          "root.tip_axis",
+                                          "pressure.differential_MPa", "soil.d_range_mm",
+                                          "soil.grains_file",          "soil.inertial_number_max",
+                                          "soil.compaction_friction_deg"};
   for (const SectionSpec& section : schema()) {
     for (const KeySpec& key : section.keys) {
       const std::string name = section.name + "." + key.name;

@@ -46,6 +46,29 @@ s_g_mm = 0.37
 c_g = -1
 )";
 
+inline const std::string soil = R"(
+[soil]
+box_from_mm = [0.1, -1]
+box_to_mm = [2, 1]
+confining_pressure_MPa = 0.05
+d_range_mm = [0.08, 0.12]
+E_MPa = 300
+)";
+
+inline const std::string stone = R"(
+[[soil.obstacle]]
+shape = "stone"
+position_mm = [1, 0.3]
+radius_mm = 0.2
+)";
+
+inline const std::string penetrometer = R"(
+[penetrometer]
+diameter_mm = 0.5
+rate_mm_h = 0.5
+depth_mm = 1.2
+)";
+
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::logic_error("the test's scene has no " + from);

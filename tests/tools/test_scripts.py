@@ -116,6 +116,7 @@ def copy(project: Path, tmp_path: Path) -> Path:
     for name in ("run.sh", "test.sh"):
         shutil.copy(project / "tools" / name, tmp_path / "tools" / name)
     fake(tmp_path / "tools", "build.sh", "exit ${BUILD_STATUS:-0}\n")
+    fake(tmp_path / "tools", "setup.sh", f'echo "$*" >>{tmp_path}/setup.log\n')
     fake(tmp_path / "build" / "release", "rootsoil", 'echo "$@"\nexit 3\n')
     (tmp_path / "scenarios" / "case2_arabidopsis.toml").touch()
     (tmp_path / "scenarios" / "growth_3d.toml").touch()
@@ -134,6 +135,25 @@ def test_run_finds_scenes_and_passes_arguments_and_status_on(copy: Path):
     assert run("growth_3d.toml") == "run /scenarios/growth_3d.toml"
     assert run("scenarios/growth_3d.toml") == "run scenarios/growth_3d.toml"
     assert run("no_such_scene") == "run no_such_scene"
+
+
+def test_only_a_scene_with_soil_asks_for_yade(copy: Path):
+    (copy / "scenarios" / "dry.toml").write_text("[root]\n# no [soil]\n")
+    (copy / "scenarios" / "wet.toml").write_text("[root]\n[soil]\n")
+    subprocess.run([copy / "tools" / "run.sh", "dry"], capture_output=True)
+    assert not (copy / "setup.log").exists()
+    subprocess.run([copy / "tools" / "run.sh", "wet"], capture_output=True)
+    assert (copy / "setup.log").read_text() == "--soil\n"
+
+
+def test_setup_installs_yade_only_when_asked(project: Path, machine):
+    log, environment = machine
+    for arguments in ([], ["--soil"]):
+        log.unlink(missing_ok=True)
+        done = subprocess.run([project / "tools" / "setup.sh", *arguments], env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert ("yade" in log.read_text().split()) == bool(arguments)
+    assert subprocess.run([project / "tools" / "setup.sh", "--sol"], capture_output=True).returncode == 2
 
 
 def test_failed_build_ends_run_and_test(copy: Path):

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "root_sph/scene/soil_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "root_sph/scene/model.hpp"
+
+namespace rootsoil {
+namespace {
+
+/// Of a cell as a ball (2D: disc) of the same volume.
+template <int Dim>
+double ball_radius_mm(double volume) {
+  return Dim == 2 ? std::sqrt(volume / std::numbers::pi) : std::cbrt(0.75 * volume / std::numbers::pi);
+}
+
+}  // namespace
+
+template <int Dim>
+SoilStart soil_start(const Scene& scene, const Solver<Dim>& solver) {
+  const Tissue<Dim>& tissue = solver.tissue();
+  SoilStart start;
+  start.root_speed_mm_h = closed_form_flow<Dim>(scene, solver.axis().length_mm()).tip_speed_mm_h;
+  double lateral_mm = 0.0;
+  for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
+    const Vec<Dim> x = tissue.cells.position[i];
+    Vec3 centre{};
+    std::copy_n(x.data(), Dim, centre.begin());
+    start.body_mm.push_back(centre);
+    start.body_radius_mm.push_back(ball_radius_mm<Dim>(tissue.cells.volume[i]));
+    lateral_mm = std::max(lateral_mm, x.template tail<Dim - 1>().norm());
+  }
+  // of a lattice root as the scene says; cells from a file lie about the x axis
+  start.root_diameter_mm = 2.0 * (scene.root.cells_file.empty() ? scene.root.radius_mm : lateral_mm);
+  return start;
+}
+
+template SoilStart soil_start<2>(const Scene&, const Solver<2>&);
+template SoilStart soil_start<3>(const Scene&, const Solver<3>&);
+
+}  // namespace rootsoil
