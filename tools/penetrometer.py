@@ -59,7 +59,7 @@ def draw(folder: Path) -> Path:
     axes.set_ylabel("resistance Q (MPa)")
     axes.set_xlim(0, end)
     axes.set_ylim(bottom=0)
-    axes.legend(frameon=False, loc="upper left")
+    axes.legend(frameon=False, loc="lower right")
     axes.set_title(
         f"Q/P = {found['Q_over_P']:.1f} at P = {found['confining_pressure_MPa']:g} MPa, "
         f"inertial number {found['inertial_number']:.2g}",

@@ -49,7 +49,7 @@ def test_bad_input(program: Program):
     text = SOIL + PENETROMETER.replace("depth_mm = 0.6", "depth_mm = 60")
     done = program("penetrometer", program.scene(text), "--out", "out")
     assert done.status == 2
-    assert "scene.toml:14: penetrometer.depth_mm: the probe would meet the wall" in done.err
+    assert "scene.toml:13: penetrometer.depth_mm: the probe would meet the wall" in done.err
     assert not (program.folder / "out").exists()
 
 
