@@ -15,9 +15,9 @@ struct Preset {
 };
 
 constexpr Preset presets[] = {
-    {"fast", 1.5, 20, "quadratic_at_surface", 0.0058},
-    {"balanced", 1.5, 20, "quadratic_at_surface", 0.0013},
-    {"reference", 1.5, 20, "quadratic_at_surface", 0.0007},
+    {"fast", 1.5, 20, "quadratic_at_surface", 0.006},
+    {"balanced", 1.5, 20, "quadratic_at_surface", 0.006},
+    {"reference", 1.5, 20, "quadratic_at_surface", 0.006},
 };
 
 const Preset& find_preset(std::string_view accuracy) {

@@ -30,6 +30,7 @@ PACKAGES: dict[str, tuple[set[str], set[str], set[str]]] = {
     "python3-numpy": (set(), set(), {"numpy"}),
     "python3-matplotlib": (set(), set(), {"matplotlib"}),
     "python3-pytest": (set(), set(), {"pytest"}),
+    "yade": (set(), set(), {"yade"}),
     "cmake": (set(), {"GoogleTest"}, set()),
 }
 # of the C library, which g++ brings
@@ -51,7 +52,7 @@ def tracked(*patterns: str) -> list[Path]:
 def installed() -> set[str]:
     """The packages that tools/setup.sh lists."""
     text = (PROJECT / "tools" / "setup.sh").read_text()
-    lines = text.split('packages="\n', 1)[1].split('"\n', 1)[0].splitlines()
+    lines = [line for part in text.split('packages="\n')[1:] for line in part.split('"\n', 1)[0].splitlines()]
     return {line.split()[0] for line in lines}
 
 
