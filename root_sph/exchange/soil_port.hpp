@@ -28,12 +28,14 @@ struct SurfaceMotion {
   std::vector<Vec3> start_mm;
   std::vector<Vec3> end_mm;
   std::vector<double> radius_mm;
+  std::vector<Vec3> spin_per_h;  ///< angular velocity, rad/h; empty: none
 };
 
 /// What the soil answers: the mean over the interval of the force on every marker, in the motion's order.
 struct SurfaceForces {
   std::vector<Vec3> mean_N;
   std::vector<double> contact_stiffness_N_mm;  ///< of each marker's contacts at the interval's end
+  std::vector<Vec3> mean_torque_Nmm;           ///< about the markers' centres (friction acts on their surface); empty: none
   std::map<std::string, double> numbers;       ///< for history.csv, by column name (soil_...)
 };
 
@@ -42,6 +44,8 @@ class SoilPort {
  public:
   virtual ~SoilPort() = default;
   virtual SurfaceForces advance(const SurfaceMotion& motion) = 0;
+  /// The names of SurfaceForces::numbers, known before the first interval: they head columns of history.csv.
+  virtual std::vector<std::string> number_names() const { return {}; }
   /// Writes the soil's state to a file of its own / takes it up again. Afterwards both go on identically, bit for bit.
   virtual void save(const std::filesystem::path& file) = 0;
   virtual void load(const std::filesystem::path& file) = 0;
