@@ -15,7 +15,9 @@ namespace rootsoil {
 template <int Dim>
 Frame make_frame(const Model<Dim>& model, const std::vector<std::string>& wanted);
 
-std::vector<std::string> history_columns();
+/// What every run has, then what its effects add.
+template <int Dim>
+std::vector<std::string> history_columns(const Model<Dim>& model);
 
 /// A row of history.csv, in the order of history_columns(), and what else the summary wants.
 struct HistoryRow {

@@ -69,13 +69,16 @@ double peak_memory_mb() {
 template <int Dim>
 class Run {
  public:
-  Run(const Scene& scene, const RunOptions& options, const RunFolder& folder);
+  Run(const Scene& scene, const RunOptions& options, const RunFolder& folder, const SoilFactory& make_soil);
   ExitStatus go();
 
  private:
   void record();
   void write_checkpoint_file();
   void resume_from_checkpoint();
+  std::filesystem::path own_file(std::int64_t step) const;
+  void write_own_files();
+  void remove_old_own_files() const;
   void write_summary(const std::string& status) const;
   std::int64_t steps_per(double interval_h) const {
     return std::max<std::int64_t>(1, std::llround(interval_h / model().solver.tissue().step_h));
@@ -107,16 +110,21 @@ class Run {
   std::int64_t steps_done_ = 0;  ///< in this session
   double wall_s_ = 0.0;
   double checkpoint_h_ = 0.0;
+  std::int64_t checkpoint_step_ = -1;
 };
 
 template <int Dim>
-Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& folder)
+Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& folder, const SoilFactory& make_soil)
     : scene_(scene),
       options_(options),
       folder_(folder.path()),
       built_(build_model<Dim>(scene)),
       log_(folder.path() / "run.log", options.quiet) {
   const Tissue<Dim>& tissue = model().solver.tissue();
+  if (make_soil) {
+    Soil soil = make_soil(scene);
+    if constexpr (Dim == 2) if (soil.port) add_soil_contact<Dim>(scene, model(), std::move(soil.contact), std::move(soil.port));
+  }
   scene_.numerics.step_h = tissue.step_h;
   cells_start_ = static_cast<std::int64_t>(tissue.cells.size());
   last_row_ = {0.0, model().solver.axis().length_mm()};
@@ -137,7 +145,7 @@ Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& fo
                      {"scene", scene_.scene.name},
                      {"dimension", std::to_string(Dim)}},
       continue_h);
-  history_ = std::make_unique<HistoryWriter>(folder_ / "history.csv", history_columns(), continue_h);
+  history_ = std::make_unique<HistoryWriter>(folder_ / "history.csv", history_columns<Dim>(model()), continue_h);
   for (const auto& effect : model().effects) {
     auto* probe = dynamic_cast<ProbeEffect<Dim>*>(effect.get());
     if (!probe) continue;
@@ -164,9 +172,39 @@ void Run<Dim>::record() {
   }
 }
 
+/// State of another process that belongs to the checkpoint of a step. The checkpoint names it by its step.
+template <int Dim>
+std::filesystem::path Run<Dim>::own_file(std::int64_t step) const {
+  return folder_ / fmt::format("soil_step_{:09}.state", step);
+}
+
+/// A new file under a new name: the old checkpoint keeps its own until the new checkpoint is complete.
+template <int Dim>
+void Run<Dim>::write_own_files() {
+  for (const auto& effect : model().effects) {
+    if (!effect->has_own_file()) continue;
+    const std::filesystem::path path = own_file(model().solver.steps());
+    effect->save_own_file(start_temporary(path, ""));
+    commit_temporary(path);
+  }
+}
+
+template <int Dim>
+void Run<Dim>::remove_old_own_files() const {
+  std::error_code trouble;  // what stays behind does no harm
+  for (const auto& entry : std::filesystem::directory_iterator(folder_, trouble)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("soil_step_") && entry.path() != own_file(checkpoint_step_)) {
+      std::filesystem::remove(entry.path(), trouble);
+    }
+  }
+}
+
 template <int Dim>
 void Run<Dim>::write_checkpoint_file() {
   const Tissue<Dim>& tissue = model().solver.tissue();
+  if (checkpoint_step_ == model().solver.steps()) return;  // it is there, and its own file must not be touched
+  write_own_files();
   Checkpoint checkpoint;
   checkpoint.time_h = tissue.time_h;
   checkpoint.step = model().solver.steps();
@@ -181,6 +219,8 @@ void Run<Dim>::write_checkpoint_file() {
   checkpoint.reals["run/worst"] = {inertia_error_max_, momentum_residual_max_};
   write_checkpoint(folder_ / "checkpoint.h5", checkpoint);
   checkpoint_h_ = tissue.time_h;
+  checkpoint_step_ = checkpoint.step;
+  remove_old_own_files();
 }
 
 template <int Dim>
@@ -200,12 +240,16 @@ void Run<Dim>::resume_from_checkpoint() {
   }
   restore_cells<Dim>(checkpoint, model().solver.tissue().cells);
   model().solver.restore(checkpoint.reals, checkpoint.integers);
-  for (const auto& effect : model().effects) effect->restore(checkpoint.reals);
+  for (const auto& effect : model().effects) {
+    effect->restore(checkpoint.reals);
+    if (effect->has_own_file()) effect->restore_own_file(own_file(checkpoint.step));
+  }
   cells_start_ = checkpoint.integers.at("run/cells_start").at(0);
   last_row_ = {checkpoint.reals.at("run/last_row").at(0), checkpoint.reals.at("run/last_row").at(1)};
   inertia_error_max_ = checkpoint.reals.at("run/worst").at(0);
   momentum_residual_max_ = checkpoint.reals.at("run/worst").at(1);
   checkpoint_h_ = checkpoint.time_h;
+  checkpoint_step_ = checkpoint.step;
 }
 
 template <int Dim>
@@ -291,6 +335,9 @@ ExitStatus Run<Dim>::go() {
         degenerate_max_ = solver.gradient_report().degenerate;
         log_.note("{} cells have too few neighbours for a full gradient at {:.4g} h", degenerate_max_, tissue.time_h);
       }
+      for (const auto& effect : model().effects) {
+        for (const std::string& note : effect->take_notes()) log_.note("{}", note);
+      }
       measure_wall();
       const bool frame_due = solver.steps() % per_frame == 0 || solver.steps() == total;
       if (frame_due) record();
@@ -300,13 +347,14 @@ ExitStatus Run<Dim>::go() {
                      static_cast<double>(steps_done_) / std::max(wall_s_, 1e-9), inertia_error_max_,
                      wall_s_ * static_cast<double>(until - solver.steps()) / static_cast<double>(steps_done_)});
     }
-  } catch (const UnphysicalError& error) {
+  } catch (const Error& error) {
+    if (error.status() != ExitStatus::unphysical && error.status() != ExitStatus::soil_failed) throw;
     progress.end();
     measure_wall();
-    write_summary("unphysical");
+    write_summary(error.status() == ExitStatus::unphysical ? "unphysical" : "soil failed");
     log_.error("{}\n  kept: frames until {:.5g} h and the last good checkpoint of {:.5g} h in {}", error.what(),
                series_->frames().empty() ? 0.0 : series_->frames().back().time_h, checkpoint_h_, folder_.string());
-    return ExitStatus::unphysical;
+    return error.status();
   }
   progress.end();
   measure_wall();
@@ -321,22 +369,26 @@ ExitStatus Run<Dim>::go() {
   write_summary("done");
   log_.info("done: {} cells after {} divisions, root {:.4f} mm, inertia error at most {:.2g} of p, {:.1f} s, {:.0f} MB",
             tissue.cells.size(), divisions(), solver.axis().length_mm(), inertia_error_max_, wall_s_, peak_memory_mb());
+  for (const auto& effect : model().effects) {
+    if (const std::string remark = effect->closing_remark(); !remark.empty()) log_.info("{}", remark);
+  }
   if (scene_.output.picture) log_.info("{}", draw_picture(folder_));
   return ExitStatus::done;
 }
 
 template <int Dim>
-int run_in_folder(const Scene& scene, const RunOptions& options) {
+int run_in_folder(const Scene& scene, const RunOptions& options, const SoilFactory& make_soil) {
   refuse_unstable_law<Dim>(scene);  // before the folder is touched
   const RunFolder folder = claim_run_folder(options.out, options.resume);
-  return static_cast<int>(Run<Dim>(scene, options, folder).go());
+  return static_cast<int>(Run<Dim>(scene, options, folder, make_soil).go());
 }
 
 }  // namespace
 
-int run_scene(const Scene& scene, const RunOptions& options) {
+int run_scene(const Scene& scene, const RunOptions& options, const SoilFactory& make_soil) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
-  return scene.scene.dimension == 2 ? run_in_folder<2>(scene, options) : run_in_folder<3>(scene, options);
+  return scene.scene.dimension == 2 ? run_in_folder<2>(scene, options, make_soil)
+                                    : run_in_folder<3>(scene, options, make_soil);
 }
 
 }  // namespace rootsoil

@@ -21,9 +21,10 @@ ARROWS = {
     "tissue": {"core"},
     "profiles": {"core"},
     "dynamics": BASIS,
-    "effects": BASIS | {"dynamics"},
+    "exchange": {"core", "kernels", "neighbours"},
+    "effects": BASIS | {"dynamics", "exchange"},
     "io": {"core"},
-    "scene": BASIS | {"dynamics", "effects", "io"},
+    "scene": BASIS | {"dynamics", "exchange", "effects", "io"},
 }
 # header: who may include it although no arrow leads there
 EXCEPTIONS = {"io/frame.hpp": {"effects"}}
