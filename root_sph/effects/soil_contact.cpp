@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/effects/soil_contact.hpp"
 
-#include "root_sph/exchange/under_relaxation.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,8 @@
 #include <limits>
 #include <unordered_map>
 #include <utility>
+
+#include "root_sph/exchange/under_relaxation.hpp"
 
 namespace rootsoil {
 namespace {
@@ -89,13 +89,17 @@ void SoilContactEffect<Dim>::Load::for_each_number(Visit&& visit) {
   all(residual_N);
   all(start_mm);
   all(angle);
+  all(path_mm);
+  all(impulse_Nh);
+  all(owed_N);
   visit(in_soil);
 }
 
 template <int Dim>
 template <class Visit>
 void SoilContactEffect<Dim>::Sums::for_each_number(Visit&& visit) {
-  for (double* x : {&root_work_Nmm, &soil_work_Nmm, &expected_path_mm, &expected_from_h, &expected_from_mm, &relaxation}) {
+  for (double* x :
+       {&root_work_Nmm, &soil_work_Nmm, &expected_path_mm, &expected_from_h, &expected_from_mm, &relaxation}) {
     visit(*x);
   }
 }
@@ -143,6 +147,7 @@ void SoilContactEffect<Dim>::begin_interval() {
     load[m].in_soil = near ? 1.0 : 0.0;
     load[m].start_mm = x;
     load[m].angle.setZero();
+    load[m].impulse_Nh.setZero();
   }
   load_.swap(load);
   interval_start_h_ = solver_.tissue().time_h;
@@ -173,6 +178,7 @@ void SoilContactEffect<Dim>::begin_window(Tissue<Dim>& tissue, std::vector<Vec<D
   start_position_mm_ = cells.position.values();
   share_ = ramp(tissue.time_h + 0.5 * solver_.window_h());
   applied_N_.assign(n, Vec<Dim>::Zero());
+  applied_from_mm_.assign(n, Vec<Dim>::Zero());
   for (std::size_t m = 0; m < n; ++m) applied_N_[m] = share_ * load_[m].force_N;
   spread_forces();
   add_stiffness(tissue, stiffness);
@@ -227,9 +233,14 @@ void SoilContactEffect<Dim>::add_forces(Tissue<Dim>& tissue) {
   if (parameters_.stiffness_predictor) {
     for (std::size_t m = 0; m < load_.size(); ++m) {
       if (load_[m].stiffness_N_mm <= 0.0) continue;
-      const Vec<Dim> moved = surface_.positions()[m] - load_[m].start_mm +
-                             mapping_.interpolate(m, tissue.cells.position.values()) - anchor_mm_[m];
-      applied_N_[m] = share_ * predicted_force<Dim>(load_[m].force_N, load_[m].stiffness_N_mm, moved);
+      const Vec<Dim> moved = mapping_.interpolate(m, tissue.cells.position.values()) - anchor_mm_[m];
+      sum_.root_work_Nmm -= applied_N_[m].dot(moved - applied_from_mm_[m]);
+      applied_from_mm_[m] = moved;
+      const Vec<Dim> since_measured = 0.5 * load_[m].path_mm + surface_.positions()[m] - load_[m].start_mm + moved;
+      const Vec<Dim> base = load_[m].force_N + load_[m].owed_N;
+      const Vec<Dim> force = predicted_force<Dim>(base, load_[m].stiffness_N_mm, since_measured);
+      load_[m].impulse_Nh += tissue.step_h * force;
+      applied_N_[m] = share_ * force;
     }
     spread_forces();
   }
@@ -246,7 +257,7 @@ void SoilContactEffect<Dim>::move_markers(const Tissue<Dim>& tissue) {
     const Spin<Dim> turned = mapping_.half_curl(m, moved_cells);
     surface_.positions()[m] += moved;
     load_[m].angle += turned;
-    sum_.root_work_Nmm -= applied_N_[m].dot(moved) + share_ * load_[m].torque_Nmm.dot(turned);
+    sum_.root_work_Nmm -= applied_N_[m].dot(moved - applied_from_mm_[m]) + share_ * load_[m].torque_Nmm.dot(turned);
   }
   ++windows_done_;
   if (share_ < 1.0 || !parameters_.free_growth.axial_rate_per_h) return;
@@ -267,6 +278,7 @@ void SoilContactEffect<Dim>::exchange(const Tissue<Dim>& tissue) {
   motion.duration_h = tissue.time_h - interval_start_h_;
   std::vector<std::size_t> marker;
   for (std::size_t m = 0; m < load_.size(); ++m) {
+    load_[m].path_mm = surface_.positions()[m] - load_[m].start_mm;
     if (load_[m].in_soil == 0.0) continue;
     marker.push_back(m);
     motion.id.push_back(surface_.ids()[m]);
@@ -284,9 +296,8 @@ void SoilContactEffect<Dim>::take_answer(const SurfaceMotion& motion, const std:
   const bool torques = !answer.mean_torque_Nmm.empty();
   if (answer.mean_N.size() != marker.size() || answer.contact_stiffness_N_mm.size() != marker.size() ||
       (torques && answer.mean_torque_Nmm.size() != marker.size())) {
-    throw Error(ExitStatus::soil_failed,
-                fmt::format("the soil answered for {} of {} surface markers at {:.5g} h", answer.mean_N.size(),
-                            marker.size(), motion.time_h));
+    throw Error(ExitStatus::soil_failed, fmt::format("the soil answered for {} of {} surface markers at {:.5g} h",
+                                                     answer.mean_N.size(), marker.size(), motion.time_h));
   }
   std::vector<Vec<Dim>> residual(marker.size());
   double before_dot_change = 0.0, change_squared = 0.0, residual_squared = 0.0;
@@ -295,13 +306,19 @@ void SoilContactEffect<Dim>::take_answer(const SurfaceMotion& motion, const std:
     const Vec<Dim> force = shortened<Dim>(answer.mean_N[k]);
     const Spin<Dim> torque = torques ? shortened_spin<Dim>(answer.mean_torque_Nmm[k]) : Spin<Dim>(Spin<Dim>::Zero());
     if (!force.allFinite() || !torque.allFinite() || !std::isfinite(answer.contact_stiffness_N_mm[k])) {
-      throw Error(ExitStatus::soil_failed,
-                  fmt::format("the soil's force on surface marker {} is not a number at {:.5g} h (position {:.4g}, "
-                              "{:.4g}, {:.4g} mm)",
-                              motion.id[k], motion.time_h, motion.end_mm[k][0], motion.end_mm[k][1], motion.end_mm[k][2]));
+      throw Error(
+          ExitStatus::soil_failed,
+          fmt::format("the soil's force on surface marker {} is not a number at {:.5g} h (position {:.4g}, "
+                      "{:.4g}, {:.4g} mm)",
+                      motion.id[k], motion.time_h, motion.end_mm[k][0], motion.end_mm[k][1], motion.end_mm[k][2]));
     }
-    sum_.soil_work_Nmm -= force.dot(shortened<Dim>(motion.end_mm[k]) - shortened<Dim>(motion.start_mm[k])) +
-                          torque.dot(load.angle);
+    sum_.soil_work_Nmm -=
+        force.dot(shortened<Dim>(motion.end_mm[k]) - shortened<Dim>(motion.start_mm[k])) + torque.dot(load.angle);
+    if (parameters_.stiffness_predictor && load.stiffness_N_mm > 0.0) {
+      load.owed_N += force - load.impulse_Nh / motion.duration_h;
+      const double most = 0.5 * force.norm();  // none where contact is lost
+      if (load.owed_N.norm() > most) load.owed_N *= most / load.owed_N.norm();
+    }
     load.stiffness_N_mm = answer.contact_stiffness_N_mm[k];
     load.torque_Nmm = torque;
     residual[k] = force - load.force_N;
@@ -338,8 +355,8 @@ double SoilContactEffect<Dim>::thrust_N(double within_mm) const {
 template <int Dim>
 double SoilContactEffect<Dim>::expected_tip_speed_mm_h() const {
   const RootAxis<Dim>& axis = solver_.axis();
-  const double arrest_N = solver_.tissue().pressure_MPa * parameters_.free_growth.arrest_stress_per_pressure *
-                          section<Dim>(solver_);
+  const double arrest_N =
+      solver_.tissue().pressure_MPa * parameters_.free_growth.arrest_stress_per_pressure * section<Dim>(solver_);
   if (!(arrest_N > 0.0)) return 0.0;
   const auto bins = static_cast<std::size_t>(std::ceil(axis.length_mm() / axis.bin_mm()));
   std::vector<double> thrust(bins, 0.0);
@@ -411,9 +428,10 @@ std::string SoilContactEffect<Dim>::closing_remark() const {
   const double hours = solver_.tissue().time_h - sum_.expected_from_h;
   if (sum_.expected_from_h < 0.0 || hours <= 0.0) return "";
   const double measured = (solver_.axis().length_mm() - sum_.expected_from_mm) / hours;
-  return fmt::format("soil: tip speed {:.4f} mm/h; from the soil's forces it should be {:.4f} mm/h, V0 (1 - F/(p (1 - "
-                     "nu_A) W)) along the root; work of the root {:.4g} N mm, received by the soil {:.4g} N mm",
-                     measured, sum_.expected_path_mm / hours, sum_.root_work_Nmm, sum_.soil_work_Nmm);
+  return fmt::format(
+      "soil: tip speed {:.4f} mm/h; from the soil's forces it should be {:.4f} mm/h, V0 (1 - F/(p (1 - "
+      "nu_A) W)) along the root; work of the root {:.4g} N mm, received by the soil {:.4g} N mm",
+      measured, sum_.expected_path_mm / hours, sum_.root_work_Nmm, sum_.soil_work_Nmm);
 }
 
 template <int Dim>
@@ -460,5 +478,6 @@ void SoilContactEffect<Dim>::restore(const NamedReals& reals) {
 template Vec<2> predicted_force<2>(const Vec<2>&, double, const Vec<2>&);
 template Vec<3> predicted_force<3>(const Vec<3>&, double, const Vec<3>&);
 template class SoilContactEffect<2>;
+template class SoilContactEffect<3>;
 
 }  // namespace rootsoil

@@ -6,14 +6,14 @@
 // first order: the interval is an accuracy knob).
 #pragma once
 
+#include <functional>
+#include <memory>
+#include <optional>
+
 #include "root_sph/effects/effect.hpp"
 #include "root_sph/exchange/material_surface.hpp"
 #include "root_sph/exchange/soil_port.hpp"
 #include "root_sph/exchange/surface_mapping.hpp"
-
-#include <functional>
-#include <memory>
-#include <optional>
 
 namespace rootsoil {
 
@@ -28,16 +28,19 @@ struct SoilContactParameters {
   double marker_spacing = 0.6;             ///< of the radius; gaps stay below 1.5 of it
   double map_width_cells = 1.4;            ///< reach of the weights between cells and markers, half of it
   int windows_per_interval = 1;
-  double ramp_h = 0.2;                ///< forces rise from nothing over this time, from the start of the run
-  bool stiffness_predictor = false;   ///< in an interval a marker's force follows its contact stiffness; for rigid walls
-  bool under_relaxation = false;      ///< Aitken's
+  double ramp_h = 0.2;  ///< forces rise from nothing over this time from the run's start
+  /// In an interval a marker's force follows its contact stiffness, from the middle of the interval before, to which
+  /// the mean force belongs. Without lag it is stable on rigid walls, where a held force pumps energy. What this gave
+  /// too much or too little, where the soil yields, is made good in the interval after.
+  bool stiffness_predictor = false;
+  bool under_relaxation = false;        ///< Aitken's
   std::optional<double> tip_length_mm;  ///< markers nearer to the tip make up the tip force; absent: a root's diameter
   std::function<bool(const Vec3& position_mm)> near_soil;  ///< empty: everywhere
   FreeGrowth free_growth;
 };
 
-/// Force of a held contact after its marker moved: its size follows the stiffness along its own line, never pulls, and
-/// grows at most fourfold within an interval. Pure.
+/// Force of a contact after its marker moved by this from where the force was measured: its size follows the stiffness
+/// along its own line, never pulls, and grows at most fourfold. Pure.
 template <int Dim>
 Vec<Dim> predicted_force(const Vec<Dim>& force_N, double stiffness_N_mm, const Vec<Dim>& moved_mm);
 
@@ -75,6 +78,9 @@ class SoilContactEffect final : public Effect<Dim> {
     Vec<Dim> residual_N = Vec<Dim>::Zero();  ///< of under-relaxation
     Vec<Dim> start_mm = Vec<Dim>::Zero();    ///< at the interval's start
     Spin<Dim> angle = Spin<Dim>::Zero();     ///< turned since then
+    Vec<Dim> path_mm = Vec<Dim>::Zero();     ///< of the interval before
+    Vec<Dim> impulse_Nh = Vec<Dim>::Zero();  ///< of the predicted forces since the interval's start
+    Vec<Dim> owed_N = Vec<Dim>::Zero();      ///< what the soil's means were more than the predicted ones, so far
     double in_soil = 0.0;                    ///< 1 where the port knows the marker
 
     template <class Visit>
@@ -115,14 +121,15 @@ class SoilContactEffect final : public Effect<Dim> {
 
   // of the window under way
   SurfaceMapping<Dim> mapping_;
-  std::vector<Vec<Dim>> anchor_mm_;         ///< sum phi x at the window's start
-  std::vector<Vec<Dim>> start_position_mm_; ///< of the cells
-  std::vector<Vec<Dim>> applied_N_;         ///< ramped force on each marker, mean over the window
-  std::vector<double> distance_to_tip_mm_;  ///< of each marker
+  std::vector<Vec<Dim>> anchor_mm_;          ///< sum phi x at the window's start
+  std::vector<Vec<Dim>> start_position_mm_;  ///< of the cells
+  std::vector<Vec<Dim>> applied_N_;          ///< ramped force on each marker, now
+  std::vector<Vec<Dim>> applied_from_mm_;    ///< how far the marker had come in the window when it was set
+  std::vector<double> distance_to_tip_mm_;   ///< of each marker
   std::vector<Vec<Dim>> axis_;
-  std::vector<std::size_t> loaded_;         ///< cells with a force
-  double share_ = 1.0;                      ///< of the ramp
-  double worst_interval_ratio_ = 0.0;       ///< interval over its stability limit, the largest that was reported
+  std::vector<std::size_t> loaded_;    ///< cells with a force
+  double share_ = 1.0;                 ///< of the ramp
+  double worst_interval_ratio_ = 0.0;  ///< interval over its stability limit, the largest that was reported
   std::vector<std::string> notes_;
 };
 

@@ -2,13 +2,13 @@
 // Which cells' kernels reach a point that need not be a cell: the look-up behind mapping and outline.
 #pragma once
 
-#include "root_sph/kernels/wendland.hpp"
-#include "root_sph/neighbours/cell_grid.hpp"
-
 #include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "root_sph/kernels/wendland.hpp"
+#include "root_sph/neighbours/cell_grid.hpp"
 
 namespace rootsoil {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/exchange/outline.hpp"
 
-#include "root_sph/core/errors.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "root_sph/core/errors.hpp"
 
 namespace rootsoil {
 namespace {
@@ -98,8 +98,8 @@ void Outline::refine() {
   std::vector<std::int64_t> id;
   bool removed_last = true;  // the ends stay
   for (std::size_t i = 0; i < position_.size(); ++i) {
-    const bool crowded = i + 1 < position_.size() && !removed_last &&
-                         (position_[i + 1] - position.back()).norm() < size_.spacing_mm;
+    const bool crowded =
+        i + 1 < position_.size() && !removed_last && (position_[i + 1] - position.back()).norm() < size_.spacing_mm;
     removed_last = crowded;
     if (crowded) continue;
     position.push_back(position_[i]);

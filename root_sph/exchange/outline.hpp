@@ -3,12 +3,12 @@
 // the base along the other flank. Markers are discs that lie a radius below the surface.
 #pragma once
 
-#include "root_sph/exchange/tissue_shape.hpp"
-
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "root_sph/exchange/tissue_shape.hpp"
 
 namespace rootsoil {
 

@@ -8,11 +8,11 @@
 //   f_j = phi_j F + 1/2 T x grad phi_j                          has the force F and the torque x_m x F + T.
 #pragma once
 
-#include "root_sph/core/types.hpp"
-
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "root_sph/core/types.hpp"
 
 namespace rootsoil {
 
@@ -45,8 +45,8 @@ class SurfaceMapping {
   /// Share of one cell in one marker.
   struct Share {
     std::int32_t cell;
-    double weight;        ///< phi
-    Vec<Dim> gradient;    ///< grad phi, 1/mm
+    double weight;      ///< phi
+    Vec<Dim> gradient;  ///< grad phi, 1/mm
   };
 
   /// \param markers positions, mm

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/exchange/tissue_shape.hpp"
 
-#include "root_sph/core/errors.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "root_sph/core/errors.hpp"
 
 namespace rootsoil {
 
@@ -64,7 +64,8 @@ typename TissueShape<Dim>::AxisPoint TissueShape<Dim>::axis_at(double distance_t
 template <int Dim>
 double TissueShape<Dim>::colour(const Vec<Dim>& x) const {
   double sum = 0.0;
-  cover_->at(x, [&](std::size_t j, const Vec<Dim>&, double q) { sum += cells_.volume[j] * wendland<Dim>(q, sqrt_det_[j]); });
+  cover_->at(
+      x, [&](std::size_t j, const Vec<Dim>&, double q) { sum += cells_.volume[j] * wendland<Dim>(q, sqrt_det_[j]); });
   return sum;
 }
 
@@ -78,8 +79,8 @@ Vec<Dim> TissueShape<Dim>::outward(const Vec<Dim>& x) const {
 }
 
 template <int Dim>
-std::optional<typename TissueShape<Dim>::SurfacePoint> TissueShape<Dim>::surface_along(const Vec<Dim>& origin,
-                                                                                       const Vec<Dim>& direction) const {
+std::optional<typename TissueShape<Dim>::SurfacePoint> TissueShape<Dim>::surface_along(
+    const Vec<Dim>& origin, const Vec<Dim>& direction) const {
   constexpr double half = 0.5;
   const double step = 0.25 * cell_size_mm_, furthest = 10.0 * radius_mm_;
   bool inside = false;

@@ -2,11 +2,11 @@
 // Where a cloud of cells ends: its midline and its surface, for the first surface markers.
 #pragma once
 
-#include "root_sph/exchange/kernel_cover.hpp"
-
 #include <optional>
 #include <span>
 #include <vector>
+
+#include "root_sph/exchange/kernel_cover.hpp"
 
 namespace rootsoil {
 

@@ -211,5 +211,7 @@ template BuiltModel<2> build_model<2>(const Scene&);
 template BuiltModel<3> build_model<3>(const Scene&);
 template SoilContactEffect<2>& add_soil_contact<2>(const Scene&, Model<2>&, SoilContactParameters,
                                                    std::unique_ptr<SoilPort>);
+template SoilContactEffect<3>& add_soil_contact<3>(const Scene&, Model<3>&, SoilContactParameters,
+                                                   std::unique_ptr<SoilPort>);
 
 }  // namespace rootsoil

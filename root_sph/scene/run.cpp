@@ -123,7 +123,7 @@ Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& fo
   const Tissue<Dim>& tissue = model().solver.tissue();
   if (make_soil) {
     Soil soil = make_soil(scene);
-    if constexpr (Dim == 2) if (soil.port) add_soil_contact<Dim>(scene, model(), std::move(soil.contact), std::move(soil.port));
+    if (soil.port) add_soil_contact<Dim>(scene, model(), std::move(soil.contact), std::move(soil.port));
   }
   scene_.numerics.step_h = tissue.step_h;
   cells_start_ = static_cast<std::int64_t>(tissue.cells.size());

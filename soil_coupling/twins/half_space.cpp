@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "soil_coupling/twins/half_space.hpp"
 
-#include "soil_coupling/twins/twin_state.hpp"
-
 #include <algorithm>
 #include <functional>
+
+#include "soil_coupling/twins/twin_state.hpp"
 
 namespace rootsoil::twins {
 namespace {

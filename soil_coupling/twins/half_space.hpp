@@ -3,19 +3,19 @@
 // friction. The plane can stand on a spring of its own, so that a root's thrust rises slowly as it grows.
 #pragma once
 
-#include "root_sph/exchange/soil_port.hpp"
+#include <Eigen/Dense>
 
-#include <Eigen/Core>
+#include "root_sph/exchange/soil_port.hpp"
 
 namespace rootsoil::twins {
 
 struct HalfSpaceParameters {
-  Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();   ///< of the plane, at rest
-  Eigen::Vector3d outward = Eigen::Vector3d::UnitX();   ///< unit normal, out of the half-space
-  double stiffness_N_mm = 0.0;          ///< of each marker's contact, normal and tangential
-  double friction = 0.0;                ///< tan of the friction angle
-  double backing_N_mm = 0.0;            ///< stiffness of the spring behind the plane; 0: the plane is fixed
-  int substeps = 10;                    ///< per interval; forces are their mean
+  Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();  ///< of the plane, at rest
+  Eigen::Vector3d outward = Eigen::Vector3d::UnitX();  ///< unit normal, out of the half-space
+  double stiffness_N_mm = 0.0;                         ///< of each marker's contact, normal and tangential
+  double friction = 0.0;                               ///< tan of the friction angle
+  double backing_N_mm = 0.0;  ///< stiffness of the spring behind the plane; 0: the plane is fixed
+  int substeps = 10;          ///< per interval; forces are their mean
 };
 
 class HalfSpace final : public SoilPort {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "soil_coupling/twins/spring_bed.hpp"
 
-#include "soil_coupling/twins/twin_state.hpp"
-
 #include <algorithm>
+
+#include "soil_coupling/twins/twin_state.hpp"
 
 namespace rootsoil::twins {
 namespace {
@@ -34,8 +34,7 @@ SurfaceForces SpringBed::advance(const SurfaceMotion& motion) {
       if (parameters_.breaks_at_mm > 0.0 && stretch.norm() > parameters_.breaks_at_mm) spring->second.broken = true;
       if (spring->second.broken) break;
       const Eigen::Vector3d along = stretch.dot(axis) * axis;
-      const Eigen::Vector3d force =
-          -parameters_.axial_N_mm * along - parameters_.lateral_N_mm * (stretch - along);
+      const Eigen::Vector3d force = -parameters_.axial_N_mm * along - parameters_.lateral_N_mm * (stretch - along);
       for (int a = 0; a < 3; ++a) forces.mean_N[m][static_cast<std::size_t>(a)] += share * force[a];
     }
     if (spring == springs_.end()) continue;
@@ -66,7 +65,7 @@ void SpringBed::load(const std::filesystem::path& file) {
   for (std::size_t k = 0; k < state.at("id").size(); ++k) {
     const double* anchor = state.at("anchor_mm").data() + 3 * k;
     springs_[static_cast<std::int64_t>(state.at("id")[k])] = {{anchor[0], anchor[1], anchor[2]},
-                                                             state.at("broken")[k] != 0.0};
+                                                              state.at("broken")[k] != 0.0};
   }
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A bed of springs (Winkler's foundation): a marker that comes into the bed is tied to where it came in, by one spring
-// along the bed's axis and softer or harder ones across it. A spring that is stretched beyond its limit breaks for good.
+// along the bed's axis and softer or harder ones across it. A spring that is stretched beyond its limit breaks for
+// good.
 #pragma once
 
-#include "root_sph/exchange/soil_port.hpp"
+#include <Eigen/Dense>
 
-#include <Eigen/Core>
+#include "root_sph/exchange/soil_port.hpp"
 
 namespace rootsoil::twins {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "soil_coupling/twins/twin_state.hpp"
 
-#include "root_sph/core/errors.hpp"
-
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "root_sph/core/errors.hpp"
 
 namespace rootsoil::twins {
 
@@ -24,8 +24,8 @@ State read_state(const std::filesystem::path& file, const std::string& kind) {
   const nlohmann::json read = nlohmann::json::parse(in, nullptr, false);
   const std::string found = read.is_object() ? read.value("soil", "") : "";
   if (found != kind) {
-    throw FileError(fmt::format("{}: damaged, or the state of another soil\n  given:   {}\n  allowed: {}", file.string(),
-                                found.empty() ? "no state" : found, kind));
+    throw FileError(fmt::format("{}: damaged, or the state of another soil\n  given:   {}\n  allowed: {}",
+                                file.string(), found.empty() ? "no state" : found, kind));
   }
   return read.at("state").get<State>();
 }
