@@ -70,7 +70,6 @@ inline twins::HalfSpaceParameters plate(const Scene& scene, double stiffness_N_m
 template <int Dim>
 class SoilRun : public physics::SceneRun<Dim> {
  public:
-  using MakeSoil = std::unique_ptr<SoilPort> (*)(const Scene&);
   template <class Make>
   SoilRun(const std::vector<std::string>& overrides, SoilContactParameters parameters, Make&& make)
       : physics::SceneRun<Dim>(scene_text, overrides),
