@@ -90,8 +90,6 @@ void SoilContactEffect<Dim>::Load::for_each_number(Visit&& visit) {
   all(start_mm);
   all(angle);
   all(path_mm);
-  all(impulse_Nh);
-  all(owed_N);
   visit(in_soil);
 }
 
@@ -147,7 +145,6 @@ void SoilContactEffect<Dim>::begin_interval() {
     load[m].in_soil = near ? 1.0 : 0.0;
     load[m].start_mm = x;
     load[m].angle.setZero();
-    load[m].impulse_Nh.setZero();
   }
   load_.swap(load);
   interval_start_h_ = solver_.tissue().time_h;
@@ -237,10 +234,7 @@ void SoilContactEffect<Dim>::add_forces(Tissue<Dim>& tissue) {
       sum_.root_work_Nmm -= applied_N_[m].dot(moved - applied_from_mm_[m]);
       applied_from_mm_[m] = moved;
       const Vec<Dim> since_measured = 0.5 * load_[m].path_mm + surface_.positions()[m] - load_[m].start_mm + moved;
-      const Vec<Dim> base = load_[m].force_N + load_[m].owed_N;
-      const Vec<Dim> force = predicted_force<Dim>(base, load_[m].stiffness_N_mm, since_measured);
-      load_[m].impulse_Nh += tissue.step_h * force;
-      applied_N_[m] = share_ * force;
+      applied_N_[m] = share_ * predicted_force<Dim>(load_[m].force_N, load_[m].stiffness_N_mm, since_measured);
     }
     spread_forces();
   }
@@ -314,12 +308,6 @@ void SoilContactEffect<Dim>::take_answer(const SurfaceMotion& motion, const std:
     }
     sum_.soil_work_Nmm -=
         force.dot(shortened<Dim>(motion.end_mm[k]) - shortened<Dim>(motion.start_mm[k])) + torque.dot(load.angle);
-    if (parameters_.stiffness_predictor && load.stiffness_N_mm > 0.0) {
-      constexpr double gain = 0.1;  // the correction lags: paid at once it doubles the overshoot on a rigid plate
-      load.owed_N += gain * (force - load.impulse_Nh / motion.duration_h);
-      const double most = 0.5 * force.norm();  // none where contact is lost
-      if (load.owed_N.norm() > most) load.owed_N *= most / load.owed_N.norm();
-    }
     load.stiffness_N_mm = answer.contact_stiffness_N_mm[k];
     load.torque_Nmm = torque;
     residual[k] = force - load.force_N;

@@ -29,9 +29,9 @@ struct SoilContactParameters {
   double map_width_cells = 1.4;            ///< reach of the weights between cells and markers, half of it
   int windows_per_interval = 1;
   double ramp_h = 0.2;  ///< forces rise from nothing over this time from the run's start
-  /// In an interval a marker's force follows its contact stiffness, from the middle of the interval before, to which
-  /// the mean force belongs. Without lag it is stable on rigid walls, where a held force pumps energy. What this gave
-  /// too much or too little, where the soil yields, is made good in the interval after.
+  /// In an interval a marker's force follows its contact stiffness, from the middle of the interval before, to which the
+  /// mean force belongs. Without lag it is stable on rigid walls, where a held force pumps energy. Where the soil yields
+  /// with stiffness k_soil, the root feels too much: as a dashpot of (k - k_soil) times the interval would add.
   bool stiffness_predictor = false;
   bool under_relaxation = false;        ///< Aitken's
   std::optional<double> tip_length_mm;  ///< markers nearer to the tip make up the tip force; absent: a root's diameter
@@ -79,8 +79,6 @@ class SoilContactEffect final : public Effect<Dim> {
     Vec<Dim> start_mm = Vec<Dim>::Zero();    ///< at the interval's start
     Spin<Dim> angle = Spin<Dim>::Zero();     ///< turned since then
     Vec<Dim> path_mm = Vec<Dim>::Zero();     ///< of the interval before
-    Vec<Dim> impulse_Nh = Vec<Dim>::Zero();  ///< of the predicted forces since the interval's start
-    Vec<Dim> owed_N = Vec<Dim>::Zero();      ///< what the soil's means were more than the predicted ones, so far
     double in_soil = 0.0;                    ///< 1 where the port knows the marker
 
     template <class Visit>

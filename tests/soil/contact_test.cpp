@@ -157,8 +157,8 @@ TEST(Markers, OnlyThoseNearTheSoilAreShownToItAndComeBackUnderNewIds) {
 /// the closed form says.
 TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const SoilContactParameters parameters = predicting();
-  SoilRun<2> run({"numerics.step_h=1e-4"}, parameters, [](const Scene& s) {
-    twins::HalfSpaceParameters p = plate(s, 10.0, 0.0);
+  SoilRun<2> run({"numerics.step_h=1e-4", "numerics.window_steps=10"}, parameters, [](const Scene& s) {
+    twins::HalfSpaceParameters p = plate(s, 2.0, 0.0);
     p.backing_N_mm = 1.5;
     return std::make_unique<twins::HalfSpace>(p);
   });
