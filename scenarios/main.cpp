@@ -19,11 +19,22 @@
 #include "root_sph/scene/commands.hpp"
 #include "root_sph/scene/read_scene.hpp"
 #include "root_sph/scene/schema.hpp"
+#include "root_sph/scene/soil_start.hpp"
 #include "soil_coupling/penetrometer.hpp"
+#include "soil_coupling/yade_soil.hpp"
 
 namespace {
 
 using namespace rootsoil;
+
+namespace {
+
+/// The soil of a scene that has one: YADE, in a process of its own.
+Soil yade_soil(const Scene& scene, const SoilStart& start) {
+  return {make_yade_soil(*scene.soil, start), soil_contact_parameters(scene)};
+}
+
+}  // namespace
 
 constexpr int bad_usage = static_cast<int>(ExitStatus::bad_input);
 constexpr int our_mistake = 1;
@@ -85,17 +96,8 @@ int command_line(int argc, char** argv) {
   run->callback([&] {
     command = [&] {
       const Scene scene = read_scene(scene_file, overrides, accuracy);
-      if (scene.soil) {  // the coupled run takes its soil from make_yade_soil (soil_coupling/yade_soil.hpp)
-        throw InputError({.file = scene.file,
-                          .line = 0,
-                          .key = "soil",
-                          .what = "a run does not couple root and soil yet",
-                          .given = {},
-                          .allowed = {},
-                          .remedy = "remove [soil], or push a probe into it: rootsoil penetrometer"});
-      }
       if (options.out.empty()) options.out = std::filesystem::path("runs") / scene.scene.name;
-      return run_scene(scene, options);
+      return scene.soil ? run_scene(scene, options, yade_soil) : run_scene(scene, options);
     };
   });
 

@@ -86,18 +86,8 @@ void ObstacleEffect<Dim>::add_forces(Tissue<Dim>& tissue, SlipAdvance advance) {
 }
 
 template <int Dim>
-void ObstacleEffect<Dim>::add_columns(const Tissue<Dim>& tissue, std::vector<FrameColumn>& columns) const {
-  // one column for all obstacles: the first makes it, the others add
-  auto column = std::find_if(columns.begin(), columns.end(), [](const auto& c) { return c.name == "contact_force"; });
-  if (column == columns.end()) {
-    columns.push_back({"contact_force", "N", "force of obstacles on the cell", 3,
-                       std::vector<double>(3 * tissue.cells.size(), 0.0)});
-    column = columns.end() - 1;
-  }
-  auto& values = std::get<std::vector<double>>(column->values);
-  for (const std::size_t i : near_) {
-    for (int a = 0; a < Dim; ++a) values[3 * i + static_cast<std::size_t>(a)] += force_[i][a];
-  }
+void ObstacleEffect<Dim>::add_columns(const Tissue<Dim>&, std::vector<FrameColumn>& columns) const {
+  add_contact_force<Dim>(near_, force_, columns);
 }
 
 template <int Dim>

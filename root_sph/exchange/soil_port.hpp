@@ -35,8 +35,8 @@ struct SurfaceMotion {
 struct SurfaceForces {
   std::vector<Vec3> mean_N;
   std::vector<double> contact_stiffness_N_mm;  ///< of each marker's contacts at the interval's end
-  std::vector<Vec3> mean_torque_Nmm;           ///< about the markers' centres (friction acts on their surface); empty: none
-  std::map<std::string, double> numbers;       ///< for history.csv, by column name (soil_...)
+  std::vector<Vec3> mean_torque_Nmm;      ///< about the markers' centres (friction acts on their surface); empty: none
+  std::map<std::string, double> numbers;  ///< for history.csv, by column name (soil_...)
 };
 
 /// The soil at one instant, for output: grains, and the contacts that carry a force.

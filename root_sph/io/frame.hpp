@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cells at one time, as named columns ready to be written.
+// Cells (and other points) at one time, as named columns ready to be written.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,17 @@ struct FrameColumn {
   std::variant<std::vector<double>, std::vector<std::int64_t>> values;  ///< cell by cell, cells * components
 };
 
+/// Points beside the cells, as surface markers or grains; one of the columns is "position".
+struct PointSet {
+  std::string name;
+  std::vector<FrameColumn> columns;  ///< all with the same number of points
+};
+
 struct Frame {
   double time_h = 0.0;
   std::int64_t step = 0;
   std::vector<FrameColumn> columns;  ///< all with the same number of cells
+  std::vector<PointSet> points;
 };
 
 }  // namespace rootsoil

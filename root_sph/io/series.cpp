@@ -18,41 +18,58 @@ namespace rootsoil {
 namespace fs = std::filesystem;
 namespace {
 
-std::size_t cells_of(const Frame& frame) {
-  if (frame.columns.empty()) return 0;
-  const auto cells = [](const FrameColumn& column) {
+std::int64_t rows_of(const std::vector<FrameColumn>& columns) {
+  if (columns.empty()) return 0;
+  const auto rows = [](const FrameColumn& column) {
     const std::size_t values = std::visit([](const auto& list) { return list.size(); }, column.values);
     const std::size_t components = static_cast<std::size_t>(column.components);
     ROOTSOIL_ASSERT(column.components >= 1 && values % components == 0);
-    return values / components;
+    return static_cast<std::int64_t>(values / components);
   };
-  const std::size_t first = cells(frame.columns.front());
-  for (const FrameColumn& column : frame.columns) ROOTSOIL_ASSERT(cells(column) == first);
+  const std::int64_t first = rows(columns.front());
+  for (const FrameColumn& column : columns) ROOTSOIL_ASSERT(rows(column) == first);
   return first;
 }
 
-FrameInfo describe(const Frame& frame) {
-  FrameInfo info{frame.time_h, frame.step, static_cast<std::int64_t>(cells_of(frame)), {}};
-  for (const FrameColumn& column : frame.columns) {
+std::vector<ColumnInfo> describe(const std::vector<FrameColumn>& columns) {
+  std::vector<ColumnInfo> infos;
+  for (const FrameColumn& column : columns) {
     const bool is_integer = std::holds_alternative<std::vector<std::int64_t>>(column.values);
-    info.columns.push_back({column.name, column.unit, column.meaning, column.components, is_integer});
+    infos.push_back({column.name, column.unit, column.meaning, column.components, is_integer});
+  }
+  return infos;
+}
+
+FrameInfo describe(const Frame& frame) {
+  FrameInfo info{frame.time_h, frame.step, rows_of(frame.columns), describe(frame.columns), {}};
+  for (const PointSet& set : frame.points) {
+    info.points.push_back({set.name, rows_of(set.columns), describe(set.columns)});
   }
   return info;
+}
+
+void write_columns(hid_t group, const std::vector<FrameColumn>& columns) {
+  for (const FrameColumn& column : columns) {
+    ROOTSOIL_ASSERT(column.name.find('/') == std::string::npos);
+    const auto create = [&](const auto& values) {
+      return hdf5::create_dataset(group, column.name, std::span(values), column.components);
+    };
+    const hdf5::Handle dataset = std::visit(create, column.values);
+    hdf5::write_attribute(dataset, "unit", column.unit);
+    hdf5::write_attribute(dataset, "meaning", column.meaning);
+  }
 }
 
 std::string frame_image(const Frame& frame) {
   const hdf5::Handle file = hdf5::create_in_memory();
   hdf5::write_attribute(file, "time_h", frame.time_h);
   hdf5::write_attribute(file, "step", frame.step);
-  hdf5::write_attribute(file, "cells", static_cast<std::int64_t>(cells_of(frame)));
-  for (const FrameColumn& column : frame.columns) {
-    ROOTSOIL_ASSERT(column.name.find('/') == std::string::npos);
-    const auto create = [&](const auto& values) {
-      return hdf5::create_dataset(file, column.name, std::span(values), column.components);
-    };
-    const hdf5::Handle dataset = std::visit(create, column.values);
-    hdf5::write_attribute(dataset, "unit", column.unit);
-    hdf5::write_attribute(dataset, "meaning", column.meaning);
+  hdf5::write_attribute(file, "cells", rows_of(frame.columns));
+  write_columns(file, frame.columns);
+  for (const PointSet& set : frame.points) {
+    const hdf5::Handle group = hdf5::create_group(file, set.name);
+    hdf5::write_attribute(group, "count", rows_of(set.columns));
+    write_columns(group, set.columns);
   }
   return hdf5::image(file);
 }
@@ -61,7 +78,7 @@ hdf5::Handle series_without_frames(const SeriesMetadata& metadata, const std::ve
   hdf5::Handle file = hdf5::create_in_memory();
   for (const auto& [name, value] : metadata) hdf5::write_attribute(file, name.c_str(), value);
   hdf5::create_group(file, "frames");
-  std::vector<std::int64_t> index(static_cast<std::size_t>(most_cells(frames)));
+  std::vector<std::int64_t> index(static_cast<std::size_t>(most_points(frames)));
   std::iota(index.begin(), index.end(), std::int64_t{0});
   const hdf5::Handle dataset = hdf5::create_dataset(file, "point_index", std::span<const std::int64_t>(index), 1);
   hdf5::write_attribute(dataset, "unit", "1");
@@ -69,19 +86,44 @@ hdf5::Handle series_without_frames(const SeriesMetadata& metadata, const std::ve
   return file;
 }
 
+ColumnInfo read_column_info(hid_t group, const std::string& name, std::int64_t rows) {
+  const hdf5::Handle dataset = hdf5::open_dataset(group, name);
+  const hdf5::Shape shape = hdf5::shape(dataset);
+  if (shape.rows != rows) throw FileError(fmt::format("'{}' has not one row a cell or point", name));
+  return {name, hdf5::read_text_attribute(dataset, "unit"), hdf5::read_text_attribute(dataset, "meaning"),
+          shape.components, shape.is_integer};
+}
+
+PointInfo read_point_info(hid_t group, const std::string& name) {
+  PointInfo info{name, hdf5::read_integer_attribute(group, "count"), {}};
+  for (const std::string& column : hdf5::member_names(group)) {
+    info.columns.push_back(read_column_info(group, column, info.count));
+  }
+  return info;
+}
+
 FrameInfo read_info(hid_t group) {
   FrameInfo info{hdf5::read_real_attribute(group, "time_h"),
                  hdf5::read_integer_attribute(group, "step"),
                  hdf5::read_integer_attribute(group, "cells"),
+                 {},
                  {}};
   for (const std::string& name : hdf5::member_names(group)) {
-    const hdf5::Handle dataset = hdf5::open_dataset(group, name);
-    const hdf5::Shape shape = hdf5::shape(dataset);
-    if (shape.rows != info.cells) throw FileError(fmt::format("'{}' has not one row a cell", name));
-    info.columns.push_back({name, hdf5::read_text_attribute(dataset, "unit"),
-                            hdf5::read_text_attribute(dataset, "meaning"), shape.components, shape.is_integer});
+    if (hdf5::is_group(group, name)) {
+      info.points.push_back(read_point_info(hdf5::open_group(group, name), name));
+    } else {
+      info.columns.push_back(read_column_info(group, name, info.cells));
+    }
   }
   return info;
+}
+
+std::vector<FrameColumn> read_columns(hid_t group, const std::vector<ColumnInfo>& infos) {
+  std::vector<FrameColumn> columns;
+  for (const ColumnInfo& c : infos) {
+    columns.push_back({c.name, c.unit, c.meaning, c.components, hdf5::read_values(hdf5::open_dataset(group, c.name))});
+  }
+  return columns;
 }
 
 // Runs a reader; its errors then say which file they are about.
@@ -97,9 +139,12 @@ auto reading(const fs::path& run_h5, Read read) {
 
 }  // namespace
 
-std::int64_t most_cells(const std::vector<FrameInfo>& frames) {
+std::int64_t most_points(const std::vector<FrameInfo>& frames) {
   std::int64_t most = 0;
-  for (const FrameInfo& frame : frames) most = std::max(most, frame.cells);
+  for (const FrameInfo& frame : frames) {
+    most = std::max(most, frame.cells);
+    for (const PointInfo& set : frame.points) most = std::max(most, set.count);
+  }
   return most;
 }
 
@@ -214,10 +259,9 @@ Frame read_frame(const fs::path& run_h5, std::size_t index) {
   return reading(run_h5, [&](hid_t file) {
     const hdf5::Handle group = hdf5::open_group(file, frame_group(index));
     const FrameInfo info = read_info(group);
-    Frame frame{info.time_h, info.step, {}};
-    for (const ColumnInfo& column : info.columns) {
-      frame.columns.push_back({column.name, column.unit, column.meaning, column.components,
-                               hdf5::read_values(hdf5::open_dataset(group, column.name))});
+    Frame frame{info.time_h, info.step, read_columns(group, info.columns), {}};
+    for (const PointInfo& set : info.points) {
+      frame.points.push_back({set.name, read_columns(hdf5::open_group(group, set.name), set.columns)});
     }
     return frame;
   });

@@ -4,7 +4,7 @@
 // While a run goes on, every frame is a file of its own (frames/frame_000012.h5) that is never touched again, and
 // run.h5 is a small table of external links to them that is replaced as a whole: no instant exists at which a
 // frame that was reported as written can be damaged. finish() makes one self-contained run.h5 of it. Readers see
-// the same groups, /frames/000012/<column>, in both states.
+// the same groups, /frames/000012/<column>, in both states. Points beside the cells are in /frames/000012/<set>/<column>.
 #pragma once
 
 #include <cstddef>
@@ -30,11 +30,21 @@ struct ColumnInfo {
   bool operator==(const ColumnInfo&) const = default;
 };
 
+/// Points beside the cells.
+struct PointInfo {
+  std::string name;
+  std::int64_t count = 0;
+  std::vector<ColumnInfo> columns;
+
+  bool operator==(const PointInfo&) const = default;
+};
+
 struct FrameInfo {
   double time_h = 0.0;
   std::int64_t step = 0;
   std::int64_t cells = 0;
   std::vector<ColumnInfo> columns;
+  std::vector<PointInfo> points;
 
   bool operator==(const FrameInfo&) const = default;
 };
@@ -74,10 +84,11 @@ SeriesMetadata read_metadata(const std::filesystem::path& run_h5);
 std::vector<FrameInfo> list_frames(const std::filesystem::path& run_h5);
 Frame read_frame(const std::filesystem::path& run_h5, std::size_t index);
 
-/// The text of run.xmf: a temporal collection of points whose values lie in run.h5.
+/// The text of run.xmf: temporal collections of points (cells, and every set beside them) whose values lie in run.h5.
 std::string xdmf_text(const std::vector<FrameInfo>& frames);
 
-std::int64_t most_cells(const std::vector<FrameInfo>& frames);
+/// The largest number of cells, or of points of a set, in any frame.
+std::int64_t most_points(const std::vector<FrameInfo>& frames);
 
 /// "/frames/000012"
 std::string frame_group(std::size_t index);

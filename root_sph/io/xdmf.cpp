@@ -2,17 +2,18 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <map>
 
 #include "root_sph/io/series.hpp"
 
 namespace rootsoil {
 namespace {
 
-std::string data_item(const ColumnInfo& column, std::int64_t cells, std::size_t frame) {
+std::string data_item(const ColumnInfo& column, std::int64_t cells, const std::string& group) {
   const std::string width = column.components == 1 ? "" : fmt::format(" {}", column.components);
   return fmt::format(
       R"(<DataItem Format="HDF" NumberType="{}" Precision="8" Dimensions="{}{}">run.h5:{}/{}</DataItem>)",
-      column.is_integer ? "Int" : "Float", cells, width, frame_group(frame), column.name);
+      column.is_integer ? "Int" : "Float", cells, width, group, column.name);
 }
 
 // ParaView draws a point only if something says which point it is: 0, 1, 2 ..., kept once for all frames.
@@ -32,31 +33,44 @@ const char* attribute_type(int components) {
   return components == 1 ? "Scalar" : components == 3 ? "Vector" : "Matrix";
 }
 
+void add_grid(const std::string& name, double time_h, std::int64_t count, std::int64_t most,
+              const std::vector<ColumnInfo>& columns, const std::string& group, std::string& text) {
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "<Grid Name=\"{}\">\n<Time Value=\"{}\"/>\n", name, time_h);
+  text += topology(count, most);
+  for (const ColumnInfo& column : columns) {
+    const std::string item = data_item(column, count, group);
+    if (column.name == "position") {
+      fmt::format_to(out, "<Geometry GeometryType=\"{}\">{}</Geometry>\n", column.components == 2 ? "XY" : "XYZ", item);
+    } else {
+      fmt::format_to(out, "<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n", column.name,
+                     attribute_type(column.components), item);
+    }
+  }
+  text += "</Grid>\n";
+}
+
+std::string collection(const std::string& name, const std::string& grids) {
+  return fmt::format("<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n{}</Grid>\n", name, grids);
+}
+
 }  // namespace
 
 std::string xdmf_text(const std::vector<FrameInfo>& frames) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
-      "<Grid Name=\"cells\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  auto out = std::back_inserter(text);
-  const std::int64_t most = most_cells(frames);
+  const std::int64_t most = most_points(frames);
+  std::string cells;
+  std::map<std::string, std::string> sets;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FrameInfo& frame = frames[i];
-    fmt::format_to(out, "<Grid Name=\"cells\">\n<Time Value=\"{}\"/>\n", frame.time_h);
-    text += topology(frame.cells, most);
-    for (const ColumnInfo& column : frame.columns) {
-      const std::string item = data_item(column, frame.cells, i);
-      if (column.name == "position") {
-        fmt::format_to(out, "<Geometry GeometryType=\"{}\">{}</Geometry>\n", column.components == 2 ? "XY" : "XYZ",
-                       item);
-      } else {
-        fmt::format_to(out, "<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n", column.name,
-                       attribute_type(column.components), item);
-      }
+    add_grid("cells", frame.time_h, frame.cells, most, frame.columns, frame_group(i), cells);
+    for (const PointInfo& set : frame.points) {
+      if (set.count == 0) continue;  // ParaView does not read a grid of nothing
+      add_grid(set.name, frame.time_h, set.count, most, set.columns, frame_group(i) + "/" + set.name, sets[set.name]);
     }
-    text += "</Grid>\n";
   }
-  return text + "</Grid>\n</Domain>\n</Xdmf>\n";
+  std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n" + collection("cells", cells);
+  for (const auto& [name, grids] : sets) text += collection(name, grids);
+  return text + "</Domain>\n</Xdmf>\n";
 }
 
 }  // namespace rootsoil

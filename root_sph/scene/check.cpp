@@ -89,7 +89,7 @@ Json examine(const Scene& scene) {
           {"bytes_per_pair", pair_bytes},
           {"pairs_per_cell", pairs / static_cast<double>(cells)},
           {"phases", phases},
-          {"processes", Json::array({"rootsoil"})},
+          {"processes", scene.soil ? Json::array({"rootsoil", "yade"}) : Json::array({"rootsoil"})},
           {"law", scene.tissue.law},
           {"hyperbolic", acoustics.hyperbolic},
           {"smallest_acoustic_modulus_MPa", acoustics.smallest_real_MPa},

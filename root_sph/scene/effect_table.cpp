@@ -126,6 +126,8 @@ constexpr EffectEntry table[] = {
      add_pair_terms<2>, add_pair_terms<3>},
     {"obstacle", "[[obstacle]]", "rigid plane, box, disc or sphere: penalty contact with friction", "",
      [](const Scene& s) { return !s.obstacles.empty(); }, add_obstacles<2>, add_obstacles<3>},
+    {"soil contact", "[soil]", "surface markers exchange motion and forces with grains in YADE, another process", "",
+     [](const Scene& s) { return s.soil.has_value(); }, add_nothing<2>, add_nothing<3>},  // the program hands the soil in
     {"probe", "[[probe]]", "a point or a bin of the tissue followed over time", "",
      [](const Scene& s) { return !s.probes.empty(); }, add_probes<2>, add_probes<3>},
 };
@@ -191,7 +193,9 @@ double midline_damping_per_h(const Scene& scene) {
   if (scene.numerics.midline_damping_per_h) return *scene.numerics.midline_damping_per_h;
   // where the root is to be bent by contact, nothing but contact and the tissue may resist
   constexpr double faster_than_flutter_per_h = 5.0;
-  return scene.growth && scene.root.base == "clamped" && scene.obstacles.empty() ? faster_than_flutter_per_h : 0.0;
+  return scene.growth && scene.root.base == "clamped" && scene.obstacles.empty() && !scene.soil
+             ? faster_than_flutter_per_h
+             : 0.0;
 }
 
 double initial_pressure_MPa(const Scene& scene) {

@@ -198,6 +198,17 @@ BuiltModel<Dim> build_model(const Scene& scene) {
   return built;
 }
 
+template <int Dim>
+SoilContactEffect<Dim>& add_soil_contact(const Scene& scene, Model<Dim>& model, SoilContactParameters parameters,
+                                         std::unique_ptr<SoilPort> port) {
+  parameters.free_growth = {[scene](double s_mm) { return closed_form_axial_rate<Dim>(scene, s_mm); },
+                            1.0 - (Dim - 1) * scene.tissue.nu_axial};
+  auto effect = std::make_unique<SoilContactEffect<Dim>>(model.solver, std::move(parameters), std::move(port));
+  SoilContactEffect<Dim>& added = *effect;
+  model.effects.push_back(std::move(effect));
+  return added;
+}
+
 template double closed_form_axial_rate<2>(const Scene&, double);
 template double closed_form_axial_rate<3>(const Scene&, double);
 template double closed_form_radial_rate<2>(const Scene&, double);
@@ -210,5 +221,9 @@ template double choose_step_h<2>(const Scene&);
 template double choose_step_h<3>(const Scene&);
 template BuiltModel<2> build_model<2>(const Scene&);
 template BuiltModel<3> build_model<3>(const Scene&);
+template SoilContactEffect<2>& add_soil_contact<2>(const Scene&, Model<2>&, SoilContactParameters,
+                                                   std::unique_ptr<SoilPort>);
+template SoilContactEffect<3>& add_soil_contact<3>(const Scene&, Model<3>&, SoilContactParameters,
+                                                   std::unique_ptr<SoilPort>);
 
 }  // namespace rootsoil

@@ -2,6 +2,7 @@
 // Scene -> model: the solver, its cells at time 0 and the effects that the scene calls for.
 #pragma once
 
+#include "root_sph/effects/soil_contact.hpp"
 #include "root_sph/scene/effect_table.hpp"
 #include "root_sph/scene/initial_cells.hpp"
 #include "root_sph/scene/scene.hpp"
@@ -39,5 +40,10 @@ struct BuiltModel {
 
 template <int Dim>
 BuiltModel<Dim> build_model(const Scene& scene);
+
+/// Lets the root of a built model meet a soil. The closed form of the scene is what a run is checked against.
+template <int Dim>
+SoilContactEffect<Dim>& add_soil_contact(const Scene& scene, Model<Dim>& model, SoilContactParameters parameters,
+                                         std::unique_ptr<SoilPort> port);
 
 }  // namespace rootsoil

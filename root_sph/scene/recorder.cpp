@@ -113,7 +113,10 @@ Frame make_frame(const Model<Dim>& model, const std::vector<std::string>& wanted
   } else {
     make.integers("neighbours", "cells that this cell interacts with", std::vector<std::int64_t>(cells.size(), 0));
   }
-  for (const auto& effect : model.effects) effect->add_columns(tissue, frame.columns);
+  for (const auto& effect : model.effects) {
+    effect->add_columns(tissue, frame.columns);
+    effect->add_points(frame.points);
+  }
   keep_wanted(frame.columns, wanted);
   return frame;
 }
@@ -129,8 +132,10 @@ void refuse_unknown_fields(const Model<Dim>& model, const Scene& scene) {
   }
 }
 
-std::vector<std::string> history_columns() {
-  return {"time_h",          "cells",
+template <int Dim>
+std::vector<std::string> history_columns(const Model<Dim>& model) {
+  std::vector<std::string> columns{
+          "time_h",          "cells",
           "divisions",       "tip_x_mm",
           "tip_y_mm",        "tip_z_mm",
           "length_mm",       "tip_speed_mm_h",
@@ -139,6 +144,10 @@ std::vector<std::string> history_columns() {
           "min_neighbours",  "contact_force_x_N",
           "contact_force_y_N", "contact_force_z_N",
           "contact_force_N"};
+  for (const auto& effect : model.effects) {
+    for (const auto& [name, value] : effect->history()) columns.push_back(name);
+  }
+  return columns;
 }
 
 template <int Dim>
@@ -187,6 +196,9 @@ HistoryRow make_history_row(const Model<Dim>& model, const LengthMark& before, s
                 contact[1],
                 Dim == 3 ? contact[Dim - 1] : 0.0,
                 contact.norm()};
+  for (const auto& effect : model.effects) {
+    for (const auto& [name, value] : effect->history()) row.values.push_back(value);
+  }
   return row;
 }
 
@@ -194,6 +206,8 @@ template Frame make_frame<2>(const Model<2>&, const std::vector<std::string>&);
 template Frame make_frame<3>(const Model<3>&, const std::vector<std::string>&);
 template void refuse_unknown_fields<2>(const Model<2>&, const Scene&);
 template void refuse_unknown_fields<3>(const Model<3>&, const Scene&);
+template std::vector<std::string> history_columns<2>(const Model<2>&);
+template std::vector<std::string> history_columns<3>(const Model<3>&);
 template HistoryRow make_history_row<2>(const Model<2>&, const LengthMark&, std::int64_t);
 template HistoryRow make_history_row<3>(const Model<3>&, const LengthMark&, std::int64_t);
 

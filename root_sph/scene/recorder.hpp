@@ -18,7 +18,9 @@ Frame make_frame(const Model<Dim>& model, const std::vector<std::string>& wanted
 template <int Dim>
 void refuse_unknown_fields(const Model<Dim>& model, const Scene& scene);
 
-std::vector<std::string> history_columns();
+/// What every run has, then what its effects add.
+template <int Dim>
+std::vector<std::string> history_columns(const Model<Dim>& model);
 
 /// A row of history.csv, in the order of history_columns(), and what else the summary wants.
 struct HistoryRow {

@@ -14,6 +14,7 @@
 #include "root_sph/scene/recorder.hpp"
 #include "root_sph/scene/resume.hpp"
 #include "root_sph/scene/run_log.hpp"
+#include "root_sph/scene/soil_start.hpp"
 #include "root_sph/scene/write_scene.hpp"
 
 #include <fmt/format.h>
@@ -62,13 +63,16 @@ class Run {
  public:
   /// \param checkpoint of this scene, to go on from
   Run(const Scene& scene, const RunOptions& options, const RunFolder& folder,
-      const std::optional<Checkpoint>& checkpoint);
+      const std::optional<Checkpoint>& checkpoint, const SoilMaker& make_soil);
   ExitStatus go();
 
  private:
   void record();
   void write_checkpoint_file();
   void resume_from(const Checkpoint& checkpoint);
+  std::filesystem::path own_file(std::int64_t step) const;
+  void write_own_files();
+  void remove_old_own_files() const;
   void write_summary(const std::string& status) const;
   std::int64_t steps_per(double interval_h) const {
     return std::max<std::int64_t>(1, std::llround(interval_h / model().solver.tissue().step_h));
@@ -101,17 +105,22 @@ class Run {
   std::int64_t steps_done_ = 0;  ///< in this session
   double wall_s_ = 0.0;
   double checkpoint_h_ = 0.0;
+  std::int64_t checkpoint_step_ = -1;
 };
 
 template <int Dim>
 Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& folder,
-              const std::optional<Checkpoint>& checkpoint)
+              const std::optional<Checkpoint>& checkpoint, const SoilMaker& make_soil)
     : scene_(scene),
       options_(options),
       folder_(folder.path()),
       built_(build_model<Dim>(scene)),
       log_(folder.path() / "run.log", options.quiet) {
   const Tissue<Dim>& tissue = model().solver.tissue();
+  if (make_soil) {
+    Soil soil = make_soil(scene, soil_start<Dim>(scene, model().solver));
+    if (soil.port) add_soil_contact<Dim>(scene, model(), std::move(soil.contact), std::move(soil.port));
+  }
   cells_start_ = static_cast<std::int64_t>(tissue.cells.size());
   last_row_ = {0.0, model().solver.axis().length_mm()};
   refuse_unknown_fields<Dim>(model(), scene_);  // before anything is written
@@ -131,7 +140,7 @@ Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& fo
                      {"scene", scene_.scene.name},
                      {"dimension", std::to_string(Dim)}},
       continue_h);
-  history_ = std::make_unique<HistoryWriter>(folder_ / "history.csv", history_columns(), continue_h);
+  history_ = std::make_unique<HistoryWriter>(folder_ / "history.csv", history_columns<Dim>(model()), continue_h);
   for (const auto& effect : model().effects) {
     auto* probe = dynamic_cast<ProbeEffect<Dim>*>(effect.get());
     if (!probe) continue;
@@ -159,9 +168,39 @@ void Run<Dim>::record() {
   }
 }
 
+/// State of another process that belongs to the checkpoint of a step. The checkpoint names it by its step.
+template <int Dim>
+std::filesystem::path Run<Dim>::own_file(std::int64_t step) const {
+  return folder_ / fmt::format("soil_step_{:09}.state", step);
+}
+
+/// A new file under a new name: the old checkpoint keeps its own until the new checkpoint is complete.
+template <int Dim>
+void Run<Dim>::write_own_files() {
+  for (const auto& effect : model().effects) {
+    if (!effect->has_own_file()) continue;
+    const std::filesystem::path path = own_file(model().solver.steps());
+    effect->save_own_file(start_temporary(path, ""));
+    commit_temporary(path);
+  }
+}
+
+template <int Dim>
+void Run<Dim>::remove_old_own_files() const {
+  std::error_code trouble;  // what stays behind does no harm
+  for (const auto& entry : std::filesystem::directory_iterator(folder_, trouble)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("soil_step_") && entry.path() != own_file(checkpoint_step_)) {
+      std::filesystem::remove(entry.path(), trouble);
+    }
+  }
+}
+
 template <int Dim>
 void Run<Dim>::write_checkpoint_file() {
   const Tissue<Dim>& tissue = model().solver.tissue();
+  if (checkpoint_step_ == model().solver.steps()) return;  // it is there, and its own file must not be touched
+  write_own_files();
   Checkpoint checkpoint;
   checkpoint.time_h = tissue.time_h;
   checkpoint.step = model().solver.steps();
@@ -176,19 +215,25 @@ void Run<Dim>::write_checkpoint_file() {
   checkpoint.reals["run/worst"] = {inertia_error_max_, momentum_residual_max_, inertia_error_};
   write_checkpoint(folder_ / "checkpoint.h5", checkpoint);
   checkpoint_h_ = tissue.time_h;
+  checkpoint_step_ = checkpoint.step;
+  remove_old_own_files();
 }
 
 template <int Dim>
 void Run<Dim>::resume_from(const Checkpoint& checkpoint) {
   restore_cells<Dim>(checkpoint, model().solver.tissue().cells);
   model().solver.restore(checkpoint.reals, checkpoint.integers);
-  for (const auto& effect : model().effects) effect->restore(checkpoint.reals);
+  for (const auto& effect : model().effects) {
+    effect->restore(checkpoint.reals);
+    if (effect->has_own_file()) effect->restore_own_file(own_file(checkpoint.step));
+  }
   cells_start_ = checkpoint.integers.at("run/cells_start").at(0);
   last_row_ = {checkpoint.reals.at("run/last_row").at(0), checkpoint.reals.at("run/last_row").at(1)};
   inertia_error_max_ = checkpoint.reals.at("run/worst").at(0);
   momentum_residual_max_ = checkpoint.reals.at("run/worst").at(1);
   inertia_error_ = checkpoint.reals.at("run/worst").at(2);
   checkpoint_h_ = checkpoint.time_h;
+  checkpoint_step_ = checkpoint.step;
 }
 
 template <int Dim>
@@ -276,6 +321,9 @@ ExitStatus Run<Dim>::go() {
         degenerate_max_ = solver.gradient_report().degenerate;
         log_.note("{} cells have too few neighbours for a full gradient at {:.4g} h", degenerate_max_, tissue.time_h);
       }
+      for (const auto& effect : model().effects) {
+        for (const std::string& note : effect->take_notes()) log_.note("{}", note);
+      }
       measure_wall();
       const bool frame_due = solver.steps() % per_frame == 0 || solver.steps() == total;
       if (frame_due) record();
@@ -285,13 +333,14 @@ ExitStatus Run<Dim>::go() {
                      static_cast<double>(steps_done_) / std::max(wall_s_, 1e-9), inertia_error_max_,
                      wall_s_ * static_cast<double>(until - solver.steps()) / static_cast<double>(steps_done_)});
     }
-  } catch (const UnphysicalError& error) {
+  } catch (const Error& error) {
+    if (error.status() != ExitStatus::unphysical && error.status() != ExitStatus::soil_failed) throw;
     progress.end();
     measure_wall();
-    write_summary("unphysical");
+    write_summary(error.status() == ExitStatus::unphysical ? "unphysical" : "soil failed");
     log_.error("{}\n  kept: frames until {:.5g} h and the last good checkpoint of {:.5g} h in {}", error.what(),
                series_->frames().empty() ? 0.0 : series_->frames().back().time_h, checkpoint_h_, folder_.string());
-    return ExitStatus::unphysical;
+    return error.status();
   }
   progress.end();
   measure_wall();
@@ -309,12 +358,15 @@ ExitStatus Run<Dim>::go() {
   log_.info("inertia error {:.2g} % of p at the end, at most {:.2g} %; discretisation error about {:.2g} % ({})",
             100.0 * inertia_error_, 100.0 * inertia_error_max_,
             100.0 * discretisation_error(scene_.numerics.accuracy), scene_.numerics.accuracy);
+  for (const auto& effect : model().effects) {
+    if (const std::string remark = effect->closing_remark(); !remark.empty()) log_.info("{}", remark);
+  }
   if (scene_.output.picture) log_.info("{}", draw_picture(folder_));
   return ExitStatus::done;
 }
 
 template <int Dim>
-int run_in_folder(Scene scene, const RunOptions& options) {
+int run_in_folder(Scene scene, const RunOptions& options, const SoilMaker& make_soil) {
   refuse_unstable_law<Dim>(scene);  // before the folder is touched
   const RunFolder folder = claim_run_folder(options.out, options.resume);
   std::optional<Checkpoint> checkpoint;
@@ -327,14 +379,15 @@ int run_in_folder(Scene scene, const RunOptions& options) {
   }
   scene.numerics.step_h = choose_step_h<Dim>(scene);
   if (checkpoint) refuse_foreign_checkpoint(scene, *checkpoint, folder.path());
-  return static_cast<int>(Run<Dim>(scene, options, folder, checkpoint).go());
+  return static_cast<int>(Run<Dim>(scene, options, folder, checkpoint, make_soil).go());
 }
 
 }  // namespace
 
-int run_scene(const Scene& scene, const RunOptions& options) {
+int run_scene(const Scene& scene, const RunOptions& options, const SoilMaker& make_soil) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
-  return scene.scene.dimension == 2 ? run_in_folder<2>(scene, options) : run_in_folder<3>(scene, options);
+  return scene.scene.dimension == 2 ? run_in_folder<2>(scene, options, make_soil)
+                                    : run_in_folder<3>(scene, options, make_soil);
 }
 
 }  // namespace rootsoil

@@ -37,6 +37,25 @@ SoilStart soil_start(const Scene& scene, const Solver<Dim>& solver) {
   return start;
 }
 
+SoilContactParameters soil_contact_parameters(const Scene& scene) {
+  ROOTSOIL_ASSERT(scene.soil && scene.soil_contact && scene.numerics.step_h);
+  const SoilContactSection& section = *scene.soil_contact;
+  SoilContactParameters parameters;
+  parameters.marker_radius_mm = section.marker_radius_mm;
+  parameters.marker_spacing = section.marker_spacing;
+  parameters.map_width_cells = section.map_width_cells;
+  const double window_h = scene.numerics.window_steps * *scene.numerics.step_h;
+  parameters.windows_per_interval = std::max(1, static_cast<int>(std::lround(section.interval_h / window_h)));
+  parameters.ramp_h = section.ramp_h;
+  parameters.stiffness_predictor = section.stiffness_predictor;
+  parameters.under_relaxation = section.under_relaxation;
+  parameters.tip_length_mm = section.tip_length_mm;
+  // no grain's centre leaves the box, and the root enters it through x = from
+  const double entrance_mm = scene.soil->box_from_mm[0] - scene.soil->d_max_mm;
+  parameters.near_soil = [entrance_mm](const Vec3& x) { return x[0] > entrance_mm; };
+  return parameters;
+}
+
 template SoilStart soil_start<2>(const Scene&, const Solver<2>&);
 template SoilStart soil_start<3>(const Scene&, const Solver<3>&);
 

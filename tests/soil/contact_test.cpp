@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: MIT
+// A root that grows onto a half-space through its surface markers, against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "root_sph/effects/obstacle.hpp"
+#include "root_sph/exchange/under_relaxation.hpp"
+#include "soil_coupling/twins/spring_bed.hpp"
+#include "tests/soil/soil_scene.hpp"
+
+namespace rootsoil::soil_test {
+namespace {
+
+using physics::record;
+
+/// Force that arrests the root: p (1 - nu_A) times its width over the part that pushes.
+double arrest_N(const physics::SceneRun<2>& run) {
+  return initial_pressure_MPa(run.scene) * (1.0 - run.scene.tissue.nu_axial) * 2.0 *
+         physics::radius_mm<2>(run.tissue, 0.2, 0.6);
+}
+
+// ---- formulas -------------------------------------------------------------------------------------
+
+TEST(PredictedForce, FollowsTheStiffnessAlongTheForceAndNeverPulls) {
+  const Vec<2> force(-2.0, 0.0);
+  EXPECT_LT((predicted_force<2>(force, 100.0, {0.01, 5.0}) - Vec<2>(-3.0, 0.0)).norm(), 1e-14);
+  EXPECT_LT((predicted_force<2>(force, 100.0, {-0.01, 0.0}) - Vec<2>(-1.0, 0.0)).norm(), 1e-14);
+  EXPECT_EQ(predicted_force<2>(force, 100.0, {-1.0, 0.0}), Vec<2>(0.0, 0.0));
+  EXPECT_LT((predicted_force<2>(force, 100.0, {1.0, 0.0}) - 4.0 * force).norm(), 1e-14);
+  EXPECT_EQ(predicted_force<2>(Vec<2>::Zero(), 100.0, {1.0, 0.0}), Vec<2>(0.0, 0.0));
+}
+
+TEST(UnderRelaxation, FindsTheFixedPointOfALinearSoil) {
+  // residual r(F) = a - b F: from any factor, Aitken's next one is 1/b
+  const double a = 2.0, b = 3.0;
+  double force = 0.1, factor = 0.3, before = a - b * force;
+  force += factor * before;
+  const double now = a - b * force, change = now - before;
+  factor = aitken_factor(factor, before * change, change * change, now * now);
+  EXPECT_NEAR(factor, 1.0 / b, 1e-14);
+  EXPECT_NEAR(force + factor * now, a / b, 1e-14);
+}
+
+TEST(UnderRelaxation, KeepsItsFactorWhereNothingChangedAndStaysWithinBounds) {
+  EXPECT_EQ(aitken_factor(0.4, 0.0, 0.0, 1.0), 0.4);
+  EXPECT_EQ(aitken_factor(0.4, 0.0, 0.0, 0.0), 0.4);
+  EXPECT_EQ(aitken_factor(0.4, -1.0, 0.01, 1.0), 1.0);
+  EXPECT_EQ(aitken_factor(0.4, 1.0, 0.01, 1.0), 0.1);
+}
+
+// ---- the surface ----------------------------------------------------------------------------------
+
+/// Depth of a marker below the surface of the tissue along its outward normal, from the ellipsoids of the cells.
+double depth_mm(const ParticleStore<2>& cells, const Vec<2>& marker, const Vec<2>& normal) {
+  const Vec<2> along(-normal[1], normal[0]);
+  double depth = 0.0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Vec<2> r = cells.position[i] - marker;
+    if (r.norm() > 0.5) continue;
+    const Mat<2> extent = cells.shape[i].inverse();
+    if (std::abs(r.dot(along)) > std::sqrt(along.dot(extent * along))) continue;
+    depth = std::max(depth, r.dot(normal) + std::sqrt(normal.dot(extent * normal)));
+  }
+  return depth;
+}
+
+TEST(Markers, StayCloseKnitAndAtTheirDepthThroughTwentyHoursOfGrowthAndDivision) {
+  SoilRun<2> run({"numerics.step_h=1e-3"}, {}, [](const Scene& s) {
+    return std::make_unique<twins::HalfSpace>(plate(s, 10.0, 100.0));  // out of reach
+  });
+  const MarkerSize size = run.contact.surface().size();
+  const auto mean_depth = [&] {
+    const auto& x = run.contact.surface().positions();
+    const auto normals = run.contact.surface().normals();
+    double sum = 0.0;
+    for (std::size_t m = 0; m < x.size(); ++m) sum += depth_mm(run.tissue.cells, x[m], normals[m]);
+    return sum / static_cast<double>(x.size());
+  };
+  const double depth_before = mean_depth(), length_before = run.solver.axis().length_mm();
+  std::set<std::int64_t> ever, now;
+  double largest_gap_now = 0.0;
+  std::int64_t reused = 0;
+  const std::size_t cells_before = run.tissue.cells.size(), markers_before = run.contact.surface().ids().size();
+  run.advance_to(20.0, [&] {
+    const auto& x = run.contact.surface().positions();
+    for (std::size_t m = 1; m < x.size(); ++m) largest_gap_now = std::max(largest_gap_now, (x[m] - x[m - 1]).norm());
+    std::set<std::int64_t> next(run.contact.surface().ids().begin(), run.contact.surface().ids().end());
+    EXPECT_EQ(next.size(), x.size());
+    for (const std::int64_t id : next) reused += !now.contains(id) && ever.contains(id);
+    ever.insert(next.begin(), next.end());
+    now.swap(next);
+  });
+  record("length/length before", run.solver.axis().length_mm() / length_before);
+  record("cells before", static_cast<double>(cells_before));
+  record("cells", static_cast<double>(run.tissue.cells.size()));
+  record("markers before", static_cast<double>(markers_before));
+  record("markers", static_cast<double>(now.size()));
+  record("largest gap/radius", largest_gap_now / size.radius_mm);
+  record("depth/radius before", depth_before / size.radius_mm);
+  record("depth/radius after", mean_depth() / size.radius_mm);
+  EXPECT_GT(run.tissue.cells.size(), 2 * cells_before);
+  EXPECT_GT(run.solver.axis().length_mm(), 3.0 * length_before);
+  EXPECT_LE(largest_gap_now, size.radius_mm);
+  EXPECT_EQ(reused, 0);
+  EXPECT_NEAR(mean_depth(), depth_before, 0.25 * size.radius_mm);
+}
+
+TEST(Markers, ASoilOutOfReachChangesNoBitOfTheRoot) {
+  physics::SceneRun<2> alone(scene_text);
+  SoilRun<2> with({}, {}, [](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, 10.0, 100.0)); });
+  alone.advance_to(0.1);
+  with.advance_to(0.1);
+  EXPECT_EQ(alone.tissue.cells.position.values(), with.tissue.cells.position.values());
+  EXPECT_EQ(alone.tissue.cells.stress.values(), with.tissue.cells.stress.values());
+  EXPECT_EQ(alone.tissue.cells.find("soil force"), nullptr);
+}
+
+TEST(Markers, OnlyThoseNearTheSoilAreShownToItAndComeBackUnderNewIds) {
+  /// Keeps the motion it was shown.
+  struct Listener final : SoilPort {
+    explicit Listener(std::vector<SurfaceMotion>& motions) : heard(motions) {}
+    SurfaceForces advance(const SurfaceMotion& motion) override {
+      heard.push_back(motion);
+      return {std::vector<Vec3>(motion.id.size()), std::vector<double>(motion.id.size(), 0.0), {}, {}};
+    }
+    void save(const std::filesystem::path&) override {}
+    void load(const std::filesystem::path&) override {}
+    std::vector<SurfaceMotion>& heard;
+  };
+  std::vector<SurfaceMotion> heard;
+  double from_mm = 1.0;
+  SoilContactParameters parameters;
+  parameters.near_soil = [&from_mm](const Vec3& x) { return x[0] > from_mm; };
+  SoilRun<2> run({}, parameters, [&heard](const Scene&) { return std::make_unique<Listener>(heard); });
+  run.advance_to(0.002);
+  from_mm = 1.1;
+  run.advance_to(0.004);
+  from_mm = 1.0;
+  run.advance_to(0.006);
+  ASSERT_EQ(heard.size(), 6u);
+  const auto shown = [&](int k) { return std::set<std::int64_t>(heard[k].id.begin(), heard[k].id.end()); };
+  for (const Vec3& x : heard[0].start_mm) EXPECT_GT(x[0], 1.0);
+  for (const Vec3& x : heard[2].start_mm) EXPECT_GT(x[0], 1.1);
+  EXPECT_LT(shown(2).size(), shown(0).size());
+  EXPECT_EQ(shown(5).size(), shown(0).size());
+  for (const std::int64_t id : shown(5)) {
+    if (!shown(2).contains(id)) EXPECT_FALSE(shown(0).contains(id)) << id;
+  }
+}
+
+// ---- thrust ---------------------------------------------------------------------------------------
+
+/// A plane on a spring: the thrust rises slowly to the arresting one, and at every thrust on the way the root grows as
+/// the closed form says.
+TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
+  const SoilContactParameters parameters = predicting();
+  SoilRun<2> run({"numerics.step_h=1e-4", "numerics.window_steps=10"}, parameters, [](const Scene& s) {
+    twins::HalfSpaceParameters p = plate(s, 2.0, 0.0);
+    p.backing_N_mm = 1.5;
+    return std::make_unique<twins::HalfSpace>(p);
+  });
+  const double free_speed = closed_form_flow<2>(run.scene, run.scene.root.length_mm).tip_speed_mm_h;
+  const double arrest = arrest_N(run);
+  double worst = 0.0, from_mm = 0.0, from_h = 0.0, impulse = 0.0;
+  run.advance_to(0.3);
+  from_mm = run.solver.axis().length_mm();
+  from_h = run.tissue.time_h;
+  double slowest = 1.0, fastest = 0.0;
+  run.advance_to(4.5, [&] {
+    impulse += run.axial_force_N() * run.solver.window_h();
+    const double hours = run.tissue.time_h - from_h;
+    if (hours < 0.3 - 1e-9) return;
+    const double speed = (run.solver.axis().length_mm() - from_mm) / hours / free_speed;
+    const double theory = 1.0 - impulse / hours / arrest_N(run);
+    worst = std::max(worst, std::abs(speed - theory));
+    slowest = std::min(slowest, speed);
+    fastest = std::max(fastest, speed);
+    from_mm = run.solver.axis().length_mm();
+    from_h = run.tissue.time_h;
+    impulse = 0.0;
+  });
+  const double root_work = run.contact.root_work_Nmm(), soil_work = run.contact.soil_work_Nmm();
+  record("arrest force before, N/mm", arrest);
+  record("final force/arrest force", run.axial_force_N() / arrest_N(run));
+  record("speed/free speed, fastest", fastest);
+  record("speed/free speed, slowest", slowest);
+  record("speed, worst deviation/free speed", worst);
+  record("work, root/soil", root_work / soil_work);
+  EXPECT_GT(fastest, 0.75);
+  EXPECT_LT(slowest, 0.05);
+  EXPECT_LT(worst, 0.03);
+  EXPECT_NEAR(run.axial_force_N() / arrest_N(run), 1.0, 0.03);
+  EXPECT_NEAR(root_work / soil_work, 1.0, 0.01);
+}
+
+struct PlateForce {
+  double peak = 0.0, mean = 0.0, noise = 0.0, settled_peak = 0.0;
+};
+
+/// Force on a fixed plate over that which arrests the root: largest, and over [0.8, 1.1] h mean and noise.
+PlateForce press(physics::SceneRun<2>& run) {
+  PlateForce force;
+  double n = 0.0, sum = 0.0, squares = 0.0;
+  run.advance_to(1.1, [&] {
+    double f = 0.0;
+    for (const auto& effect : run.built.model->effects) f -= effect->contact_force_N()[0];
+    f /= arrest_N(run);
+    force.peak = std::max(force.peak, f);
+    if (run.tissue.time_h < 0.8) return;
+    force.settled_peak = std::max(force.settled_peak, f);
+    n += 1.0;
+    sum += f;
+    squares += f * f;
+  });
+  force.mean = sum / n;
+  force.noise = std::sqrt(std::max(0.0, squares / n - force.mean * force.mean)) / force.mean;
+  return force;
+}
+
+void expect_good(const PlateForce& force) {
+  record("peak/arrest force", force.peak);
+  record("mean/arrest force", force.mean);
+  record("largest once settled/arrest force", force.settled_peak);
+  record("noise (rms/mean)", force.noise);
+  EXPECT_LT(force.peak, 1.2);
+  EXPECT_LT(force.settled_peak, 1.05);
+  EXPECT_NEAR(force.mean, 1.0, 0.03);
+  EXPECT_LT(force.noise, 0.03);
+}
+
+TEST(Thrust, OnAFixedPlateTheForceIsSteadyAndThatOfAnObstacle) {
+  SoilRun<2> soil({}, predicting(), [](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, 100.0)); });
+  const PlateForce by_soil = press(soil);
+  expect_good(by_soil);
+  physics::SceneRun<2> obstacle(scene_text + R"(
+[[obstacle]]
+name = "plate"
+shape = "plane"
+position_mm = [1.21, 0.0]
+normal = [-1.0, 0.0]
+friction = 0.0
+)");
+  const PlateForce by_obstacle = press(obstacle);
+  expect_good(by_obstacle);
+  EXPECT_NEAR(by_soil.mean, by_obstacle.mean, 0.02);
+}
+
+TEST(Thrust, AHeldForcePumpsEnergyOnARigidPlateAndTheRunSaysSo) {
+  SoilRun<2> held({}, {}, [](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, 100.0)); });
+  std::string notes;
+  double peak = 0.0;
+  held.advance_to(0.25, [&] {
+    for (const std::string& note : held.contact.take_notes()) notes += note;
+    peak = std::max(peak, held.axial_force_N() / arrest_N(held));
+  });
+  record("peak/arrest force", peak);
+  EXPECT_NE(notes.find("stability limit"), std::string::npos);
+  EXPECT_GT(peak, 1.5);
+}
+
+TEST(Thrust, LongerIntervalsStopAtTheSameForce) {
+  SoilContactParameters parameters = predicting();
+  parameters.windows_per_interval = 2;
+  SoilRun<2> run({}, parameters, [](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, 20.0)); });
+  expect_good(press(run));
+}
+
+/// The same in 3D, by a shell of markers: p (1 - 2 nu_A) times the section.
+TEST(Thrust, In3DGrowthFallsLinearlyAndStopsAtTheClosedForm) {
+  const SoilContactParameters parameters = predicting();
+  SoilRun<3> run({"scene.dimension=3", "root.length_mm=0.8", "root.cell_size_mm=0.04", "numerics.step_h=2e-4",
+                  "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
+                 parameters, [](const Scene& s) {
+                   twins::HalfSpaceParameters p = plate(s, 0.3, 0.0);
+                   p.backing_N_mm = 0.5;
+                   return std::make_unique<twins::HalfSpace>(p);
+                 });
+  const auto arrest = [&] {
+    const double radius = physics::radius_mm<3>(run.tissue, 0.2, 0.5);
+    return initial_pressure_MPa(run.scene) * (1.0 - 2.0 * run.scene.tissue.nu_axial) * std::numbers::pi * radius *
+           radius;
+  };
+  const double free_speed = closed_form_flow<3>(run.scene, run.scene.root.length_mm).tip_speed_mm_h;
+  run.advance_to(0.3);
+  double worst = 0.0, from_mm = run.solver.axis().length_mm(), from_h = run.tissue.time_h, impulse = 0.0, slowest = 1.0;
+  double largest_edge = 0.0;
+  run.advance_to(3.0, [&] {
+    const Shell& shell = run.contact.surface();
+    for (const Shell::Triangle& t : shell.triangles()) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec<3> edge = shell.positions()[static_cast<std::size_t>(t[k])] -
+                            shell.positions()[static_cast<std::size_t>(t[(k + 1) % 3])];
+        largest_edge = std::max(largest_edge, edge.norm() / shell.size().radius_mm);
+      }
+    }
+    impulse += run.axial_force_N() * run.solver.window_h();
+    const double hours = run.tissue.time_h - from_h;
+    if (hours < 0.3 - 1e-9) return;
+    const double speed = (run.solver.axis().length_mm() - from_mm) / hours / free_speed;
+    worst = std::max(worst, std::abs(speed - 1.0 + impulse / hours / arrest()));
+    slowest = std::min(slowest, speed);
+    from_mm = run.solver.axis().length_mm();
+    from_h = run.tissue.time_h;
+    impulse = 0.0;
+  });
+  record("cells", static_cast<double>(run.tissue.cells.size()));
+  record("markers", static_cast<double>(run.contact.surface().ids().size()));
+  record("free speed, mm/h", free_speed);
+  record("final force/arrest force", run.axial_force_N() / arrest());
+  record("speed/free speed, slowest", slowest);
+  record("speed, worst deviation/free speed", worst);
+  record("longest edge/radius", largest_edge);
+  record("work, root/soil", run.contact.root_work_Nmm() / run.contact.soil_work_Nmm());
+  EXPECT_LT(worst, 0.03);
+  EXPECT_NEAR(run.axial_force_N() / arrest(), 1.0, 0.05);
+  EXPECT_LE(largest_edge, 1.0);
+  EXPECT_NEAR(run.contact.root_work_Nmm() / run.contact.soil_work_Nmm(), 1.0, 0.01);
+}
+
+/// Springs all along the shaft: what holds the root is the sum over its surface, and every history column says so.
+TEST(Springs, TheHistoryAddsUp) {
+  SoilRun<2> run({}, {}, [](const Scene&) {
+    return std::make_unique<twins::SpringBed>(twins::SpringBedParameters{{0.0, 0, 0}, {1, 0, 0}, 0.02, 0.02, 0.0});
+  });
+  run.advance_to(0.5);
+  std::map<std::string, double> row;
+  for (const auto& [name, value] : run.contact.history()) row[name] = value;
+  Vec<2> on_markers = Vec<2>::Zero();
+  double load = 0.0;
+  for (std::size_t m = 0; m < run.contact.surface().ids().size(); ++m) load += run.contact.marker_force_N(m).norm();
+  for (std::size_t m = 0; m < run.contact.surface().ids().size(); ++m) on_markers += run.contact.marker_force_N(m);
+  record("axial force, N/mm", row.at("soil_axial_force_N"));
+  EXPECT_GT(row.at("soil_axial_force_N"), 1e-3);
+  // forces of the next interval are a step further than those that acted
+  EXPECT_NEAR(row.at("soil_load_N"), load, 0.01 * load);
+  EXPECT_NEAR(run.axial_force_N(), -on_markers[0], 0.01 * load);
+  EXPECT_NEAR(row.at("soil_axial_force_N"), run.axial_force_N(), 0.01 * load);
+  EXPECT_GT(row.at("soil_tied"), 50.0);
+  const double free_speed = closed_form_flow<2>(run.scene, 1.2).tip_speed_mm_h;
+  EXPECT_LT(row.at("soil_expected_tip_speed_mm_h"), free_speed);
+  EXPECT_GT(row.at("soil_expected_tip_speed_mm_h"), 0.5 * free_speed);
+}
+
+}  // namespace
+}  // namespace rootsoil::soil_test

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// Whole runs with a soil: files, resume, failure.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "root_sph/io/checkpoint.hpp"
+#include "root_sph/io/files.hpp"
+#include "root_sph/io/series.hpp"
+#include "root_sph/scene/commands.hpp"
+#include "tests/io/temporary_folder.hpp"
+#include "tests/soil/soil_scene.hpp"
+
+namespace rootsoil::soil_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+
+Scene contact_scene() {
+  return parse_scene(scene_text, "test.toml",
+                     {"scene.duration_h=0.4", "numerics.window_steps=5", "output.every_h=0.1",
+                      "output.checkpoint_every_h=0.1", "numerics.step_h=2e-4"});
+}
+
+/// A plate that the root meets after some 0.06 h; three windows an interval, so that checkpoints fall inside one.
+Soil plate_soil(const Scene& scene, const SoilStart&) {
+  Soil soil;
+  twins::HalfSpaceParameters p = plate(scene, 5.0);
+  p.friction = 0.3;
+  soil.port = std::make_unique<twins::HalfSpace>(p);
+  soil.contact = predicting();
+  soil.contact.windows_per_interval = 3;
+  return soil;
+}
+
+int run(const fs::path& out, const SoilMaker& make_soil, bool resume = false, std::optional<double> until_h = {}) {
+  RunOptions options;
+  options.out = out;
+  options.threads = 1;
+  options.resume = resume;
+  options.until_h = until_h;
+  options.quiet = true;
+  return run_scene(contact_scene(), options, make_soil);
+}
+
+std::vector<std::string> state_files(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.find(".state") != std::string::npos) names.push_back(name);
+  }
+  return names;
+}
+
+void expect_same_run(const fs::path& a, const fs::path& b) {
+  EXPECT_EQ(read_checkpoint(a / "checkpoint.h5"), read_checkpoint(b / "checkpoint.h5"));
+  EXPECT_EQ(read_whole_file(a / "history.csv"), read_whole_file(b / "history.csv"));
+  ASSERT_EQ(state_files(a), state_files(b));
+  ASSERT_EQ(state_files(a).size(), 1u);  // only that of the last checkpoint
+  EXPECT_EQ(read_whole_file(a / state_files(a)[0]), read_whole_file(b / state_files(b)[0]));
+}
+
+TEST(SoilRun, ResumesInContactBitForBit) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run(folder / "whole", plate_soil), 0);
+  const std::string history = read_whole_file(folder / "whole/history.csv");
+  EXPECT_NE(history.find(",soil_tip_force_N,"), std::string::npos);
+  EXPECT_NE(history.find(",soil_overlap_mm"), std::string::npos);
+  for (const double until_h : {0.05, 0.2, 0.302}) {
+    const fs::path parts = folder / std::to_string(until_h);
+    ASSERT_EQ(run(parts, plate_soil, false, until_h), 0);
+    ASSERT_EQ(run(parts, plate_soil, true), 0);
+    expect_same_run(folder / "whole", parts);
+  }
+  const std::vector<FrameInfo> frames = list_frames(folder / "whole/run.h5");
+  ASSERT_EQ(frames.size(), 5u);
+  ASSERT_EQ(frames.back().points.size(), 1u);
+  EXPECT_EQ(frames.back().points[0].name, "markers");
+  const Frame last = read_frame(folder / "whole/run.h5", 4);
+  const auto& columns = last.points.at(0).columns;
+  const auto force = std::find_if(columns.begin(), columns.end(), [](const auto& c) { return c.name == "force"; });
+  ASSERT_NE(force, columns.end());
+  EXPECT_EQ(force->unit, "N");
+  double sum = 0.0;
+  const auto& values = std::get<std::vector<double>>(force->values);
+  for (std::size_t m = 0; 3 * m < values.size(); ++m) sum -= values[3 * m];
+  EXPECT_GT(sum, 0.1);
+}
+
+TEST(SoilRun, WithoutASoilNothingOfItExists) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run(folder / "none", {}), 0);
+  ASSERT_EQ(run(folder / "empty", [](const Scene&, const SoilStart&) { return Soil{}; }), 0);
+  EXPECT_EQ(read_checkpoint(folder / "none/checkpoint.h5"), read_checkpoint(folder / "empty/checkpoint.h5"));
+  EXPECT_EQ(read_whole_file(folder / "none/history.csv"), read_whole_file(folder / "empty/history.csv"));
+  EXPECT_EQ(read_whole_file(folder / "none/history.csv").find("soil"), std::string::npos);
+  EXPECT_EQ(read_whole_file(folder / "none/summary.json").find("\"soil"), std::string::npos);
+  EXPECT_TRUE(state_files(folder / "none").empty());
+}
+
+/// A plate that fails in one interval.
+class Failing final : public SoilPort {
+ public:
+  Failing(const twins::HalfSpaceParameters& p, bool throws) : plate_(p), throws_(throws) {}
+  SurfaceForces advance(const SurfaceMotion& motion) override {
+    SurfaceForces forces = plate_.advance(motion);
+    if (motion.time_h > 0.25 && throws_) throw Error(ExitStatus::soil_failed, "the soil fell over");
+    if (motion.time_h > 0.25) forces.mean_N[0][0] = std::nan("");
+    return forces;
+  }
+  std::vector<std::string> number_names() const override { return plate_.number_names(); }
+  void save(const fs::path& file) override { plate_.save(file); }
+  void load(const fs::path& file) override { plate_.load(file); }
+
+ private:
+  twins::HalfSpace plate_;
+  bool throws_;
+};
+
+TEST(SoilRun, AFailureKeepsTheLastCheckpointOfBothSides) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run(folder / "whole", plate_soil), 0);
+  for (const bool throws : {false, true}) {
+    const fs::path out = folder / (throws ? "throws" : "answers NaN");
+    const auto failing = [&](const Scene& scene, const SoilStart& start) {
+      Soil soil = plate_soil(scene, start);
+      twins::HalfSpaceParameters p = plate(scene, 5.0);
+      p.friction = 0.3;
+      soil.port = std::make_unique<Failing>(p, throws);
+      return soil;
+    };
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(run(out, failing), static_cast<int>(ExitStatus::soil_failed));
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find(throws ? "the soil fell over" : "is not a number"), std::string::npos) << said;
+    EXPECT_NE(said.find("last good checkpoint of 0.2 h"), std::string::npos) << said;
+    ASSERT_EQ(run(out, plate_soil, true), 0);
+    expect_same_run(folder / "whole", out);
+  }
+}
+
+TEST(SoilRun, ALostStateIsSaid) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run(folder / "run", plate_soil, false, 0.2), 0);
+  ASSERT_EQ(state_files(folder / "run").size(), 1u);
+  fs::remove(folder / "run" / state_files(folder / "run")[0]);
+  EXPECT_THROW(run(folder / "run", plate_soil, true), FileError);
+}
+
+}  // namespace
+}  // namespace rootsoil::soil_test
