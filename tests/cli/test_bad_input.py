@@ -78,7 +78,7 @@ SCENES: dict[str, tuple[str, tuple[str, ...]]] = {
         replaced(SMALL, "cell_size_mm = 0.01", "cell_size_mm = 1e-6"),
         ("scene.toml:8: root.cell_size_mm: ", "given:   1e-06", "are all lengths in mm?"),
     ),
-    "soil": (SMALL + "\n[soil]\n", ("scene.toml:16: soil: ", "remove [soil]")),
+    "soil": (SMALL + "\n[soil]\n", ("scene.toml:16: soil.box_from_mm: this key is missing",)),
     "no such cell file": (
         replaced(SMALL, 'name = "small"', "dimension = 3").replace(
             "length_mm = 0.1\nradius_mm = 0.02\ncell_size_mm = 0.01", 'cells_file = "none.csv"'
