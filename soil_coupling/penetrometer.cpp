@@ -85,7 +85,7 @@ Rod make_rod(const Penetrometer& probe, double length_mm) {
   return rod;
 }
 
-PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe, const SoilFactory& make_soil,
+PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe, const SoilPortFactory& make_soil,
                              const std::function<void(const std::string&)>& progress) {
   PenetrometerResult result;
   const Rod rod = make_rod(probe, probe.depth_mm);

@@ -41,7 +41,7 @@ struct PenetrometerResult {
 };
 
 /// Pushes the probe into one sample for each seed.
-PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe, const SoilFactory& make_soil,
+PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe, const SoilPortFactory& make_soil,
                              const std::function<void(const std::string&)>& progress = {});
 
 /// The command: pushes, writes penetrometer.csv and penetrometer.json into the folder, prints what was found.

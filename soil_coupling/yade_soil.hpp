@@ -36,7 +36,7 @@ class YadeSoil : public SoilPort {
 /// Density that the recipe gives or that follows from the root; InputError where neither does.
 double grain_density_N_h2_mm4(const SoilRecipe& recipe, const SoilStart& start);
 
-/// The SoilFactory of a program that has YADE: makes a YadeSoil.
+/// The SoilPortFactory of a program that has YADE: makes a YadeSoil.
 std::unique_ptr<SoilPort> make_yade_soil(const SoilRecipe& recipe, const SoilStart& start);
 
 }  // namespace rootsoil

@@ -93,6 +93,6 @@ inline double quasi_static_density_N_h2_mm4(const SoilRecipe& recipe, double spe
 }
 
 /// Makes the soil that a scene calls for. Given to the run from outside, so that root_sph knows no soil engine.
-using SoilFactory = std::function<std::unique_ptr<SoilPort>(const SoilRecipe&, const SoilStart&)>;
+using SoilPortFactory = std::function<std::unique_ptr<SoilPort>(const SoilRecipe&, const SoilStart&)>;
 
 }  // namespace rootsoil

@@ -80,7 +80,7 @@ TEST(Penetrometer, AveragesTheTipOverItsSectionAndTheSeeds) {
     SoilRecipe recipe = test::packed_grains();
     recipe.dimension = dimension;
     std::vector<std::int64_t> seeds;
-    const SoilFactory factory = [&](const SoilRecipe& r, const SoilStart& start) {
+    const SoilPortFactory factory = [&](const SoilRecipe& r, const SoilStart& start) {
       seeds.push_back(r.seed);
       EXPECT_EQ(start.root_speed_mm_h, 0.5);
       EXPECT_EQ(start.root_diameter_mm, 0.8);

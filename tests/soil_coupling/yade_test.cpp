@@ -370,7 +370,7 @@ TEST_F(Yade, ThePenetrometerMeetsSixToNineTimesThePressure) {
   probe.average_from_mm = 1.0;
   probe.interval_h = 0.016;
   probe.seeds = 1;
-  const SoilFactory factory = [&](const SoilRecipe& recipe, const SoilStart& start) {
+  const SoilPortFactory factory = [&](const SoilRecipe& recipe, const SoilStart& start) {
     return std::make_unique<YadeSoil>(recipe, start, options_);
   };
   const PenetrometerResult result = penetrate(r, probe, factory);
