@@ -38,10 +38,16 @@ std::vector<Vec<2>> inset_line(const TissueShape<2>& shape, MarkerSize size) {
     const auto surface = shape.surface_along(origin, direction);
     if (surface) line.push_back(surface->position_mm - size.radius_mm * surface->outward);
   };
+  // on the inner side of a bend the rays of two pieces of the midline cross: the line must not double back there
+  const auto add_onwards = [&](const Vec<2>& origin, const Vec<2>& direction, const Vec<2>& onwards) {
+    const std::size_t before = line.size();
+    add(origin, direction);
+    if (before > 0 && line.size() > before && (line[before] - line[before - 1]).dot(onwards) <= 0.0) line.pop_back();
+  };
   const auto across = [](const Vec<2>& tipwards) { return Vec<2>(-tipwards[1], tipwards[0]); };
   for (double s = base_mm; s > cap_mm; s -= step_mm) {
     const auto axis = shape.axis_at(s);
-    add(axis.position_mm, -across(axis.tipwards));
+    add_onwards(axis.position_mm, -across(axis.tipwards), axis.tipwards);
   }
   const auto centre = shape.axis_at(cap_mm);
   const auto parts = static_cast<int>(std::ceil(std::numbers::pi * cap_mm / step_mm));
@@ -53,7 +59,7 @@ std::vector<Vec<2>> inset_line(const TissueShape<2>& shape, MarkerSize size) {
   for (double s = base_mm; s > cap_mm; s -= step_mm) back.push_back(s);
   for (auto s = back.rbegin(); s != back.rend(); ++s) {
     const auto axis = shape.axis_at(*s);
-    add(axis.position_mm, across(axis.tipwards));
+    add_onwards(axis.position_mm, across(axis.tipwards), -axis.tipwards);
   }
   return line;
 }
