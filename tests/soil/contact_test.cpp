@@ -153,13 +153,14 @@ TEST(Markers, OnlyThoseNearTheSoilAreShownToItAndComeBackUnderNewIds) {
 
 // ---- thrust ---------------------------------------------------------------------------------------
 
+/// Not for long: after some 3.6 h a root arrested on a smooth plate bends aside, with its inertia, and breaks.
 /// A plane on a spring: the thrust rises slowly to the arresting one, and at every thrust on the way the root grows as
 /// the closed form says.
 TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const SoilContactParameters parameters = predicting();
   SoilRun<2> run({"numerics.step_h=1e-4", "numerics.window_steps=10"}, parameters, [](const Scene& s) {
     twins::HalfSpaceParameters p = plate(s, 2.0, 0.0);
-    p.backing_N_mm = 1.5;
+    p.backing_N_mm = 2.5;
     return std::make_unique<twins::HalfSpace>(p);
   });
   const double free_speed = closed_form_flow<2>(run.scene, run.scene.root.length_mm).tip_speed_mm_h;
@@ -169,7 +170,7 @@ TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
   from_mm = run.solver.axis().length_mm();
   from_h = run.tissue.time_h;
   double slowest = 1.0, fastest = 0.0;
-  run.advance_to(4.5, [&] {
+  run.advance_to(2.4, [&] {
     impulse += run.axial_force_N() * run.solver.window_h();
     const double hours = run.tissue.time_h - from_h;
     if (hours < 0.3 - 1e-9) return;
