@@ -153,13 +153,15 @@ TEST(Markers, OnlyThoseNearTheSoilAreShownToItAndComeBackUnderNewIds) {
 
 // ---- thrust ---------------------------------------------------------------------------------------
 
-/// Not for long: after some 3.6 h a root arrested on a smooth plate bends aside, with its inertia, and breaks.
 /// A plane on a spring: the thrust rises slowly to the arresting one, and at every thrust on the way the root grows as
-/// the closed form says.
+/// the closed form says. A growing root that is arrested on a smooth plate bends aside sooner or later, so the plate is
+/// rough and the midline damped: neither takes part in the axial force.
 TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const SoilContactParameters parameters = predicting();
-  SoilRun<2> run({"numerics.step_h=1e-4", "numerics.window_steps=10"}, parameters, [](const Scene& s) {
+  SoilRun<2> run({"numerics.step_h=1e-4", "numerics.window_steps=10", "numerics.midline_damping_per_h=20"}, parameters,
+                 [](const Scene& s) {
     twins::HalfSpaceParameters p = plate(s, 2.0, 0.0);
+    p.friction = 0.5;
     p.backing_N_mm = 2.5;
     return std::make_unique<twins::HalfSpace>(p);
   });
@@ -170,7 +172,7 @@ TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
   from_mm = run.solver.axis().length_mm();
   from_h = run.tissue.time_h;
   double slowest = 1.0, fastest = 0.0;
-  run.advance_to(2.4, [&] {
+  run.advance_to(4.0, [&] {
     impulse += run.axial_force_N() * run.solver.window_h();
     const double hours = run.tissue.time_h - from_h;
     if (hours < 0.3 - 1e-9) return;
@@ -190,7 +192,7 @@ TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
   record("speed/free speed, slowest", slowest);
   record("speed, worst deviation/free speed", worst);
   record("work, root/soil", root_work / soil_work);
-  EXPECT_GT(fastest, 0.75);
+  EXPECT_GT(fastest, 0.5);
   EXPECT_LT(slowest, 0.05);
   EXPECT_LT(worst, 0.03);
   EXPECT_NEAR(run.axial_force_N() / arrest_N(run), 1.0, 0.03);
