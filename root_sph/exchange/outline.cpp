@@ -34,11 +34,14 @@ std::vector<Vec<2>> inset_line(const TissueShape<2>& shape, MarkerSize size) {
   const double step_mm = 0.25 * size.spacing_mm;
   const double cap_mm = std::min(shape.radius_mm(), 0.5 * shape.length_mm());
   const double base_mm = shape.length_mm() - shape.cell_size_mm();
+  const auto across = [](const Vec<2>& tipwards) { return Vec<2>(-tipwards[1], tipwards[0]); };
   const auto add = [&](const Vec<2>& origin, const Vec<2>& direction) {
     const auto surface = shape.surface_along(origin, direction);
-    if (surface) line.push_back(surface->position_mm - size.radius_mm * surface->outward);
+    if (!surface) return;
+    const Vec<2> x = surface->position_mm - size.radius_mm * surface->outward;
+    // rays sweep counter-clockwise; where the surface is rough, insets can fall back behind the one before
+    if (line.empty() || (x - line.back()).dot(across(direction)) > 0.0) line.push_back(x);
   };
-  const auto across = [](const Vec<2>& tipwards) { return Vec<2>(-tipwards[1], tipwards[0]); };
   for (double s = base_mm; s > cap_mm; s -= step_mm) {
     const auto axis = shape.axis_at(s);
     add(axis.position_mm, -across(axis.tipwards));

@@ -170,7 +170,7 @@ TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
   from_mm = run.solver.axis().length_mm();
   from_h = run.tissue.time_h;
   double slowest = 1.0, fastest = 0.0;
-  run.advance_to(2.4, [&] {
+  run.advance_to(3.0, [&] {
     impulse += run.axial_force_N() * run.solver.window_h();
     const double hours = run.tissue.time_h - from_h;
     if (hours < 0.3 - 1e-9) return;
