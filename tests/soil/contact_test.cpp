@@ -274,7 +274,7 @@ TEST(Thrust, LongerIntervalsStopAtTheSameForce) {
 /// The same in 3D, by a shell of markers: p (1 - 2 nu_A) times the section.
 TEST(Thrust, In3DGrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const SoilContactParameters parameters = predicting();
-  SoilRun<3> run({"scene.dimension=3", "root.length_mm=0.8", "root.cell_size_mm=0.04", "numerics.step_h=2e-4",
+  SoilRun<3> run({"scene.dimension=3", "root.length_mm=0.8", "root.cell_size_mm=0.04", "numerics.step_h=1e-4",
                   "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
                  parameters, [](const Scene& s) {
                    twins::HalfSpaceParameters p = plate(s, 0.3, 0.0);
