@@ -275,9 +275,11 @@ TEST(Thrust, LongerIntervalsStopAtTheSameForce) {
 TEST(Thrust, In3DGrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const SoilContactParameters parameters = predicting();
   SoilRun<3> run({"scene.dimension=3", "root.length_mm=0.8", "root.cell_size_mm=0.04", "numerics.step_h=1e-4",
-                  "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
+                  "numerics.window_steps=10", "numerics.midline_damping_per_h=20", "growth.mature_at_mm=0.6",
+                  "growth.mature_width_mm=0.1"},
                  parameters, [](const Scene& s) {
                    twins::HalfSpaceParameters p = plate(s, 0.3, 0.0);
+                   p.friction = 0.5;
                    p.backing_N_mm = 0.5;
                    return std::make_unique<twins::HalfSpace>(p);
                  });
