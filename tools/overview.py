@@ -35,6 +35,7 @@ LABEL_WIDTH = 10.0
 TICKS_WIDTH = 13.0  # of a panel's tick labels and axis label
 ZOOM_MAX_HEIGHT = 34.0
 SOIL_MAX_HEIGHT = 110.0
+SPEED_OVER_H = 0.5  # the soil yields in jerks
 PROFILE_HEIGHT = 40.0
 PANEL_GAP = 16.0
 TIMES = 6
@@ -266,12 +267,13 @@ def draw_soil(run: Run, model: Model, panels: list) -> list[str]:
     panels[0].set_ylabel(f"axial force of the soil ({unit})")
     panels[0].legend(frameon=False, loc="upper left", bbox_to_anchor=(0.0, 0.84), handlelength=1.4, borderpad=0.0)
 
-    allowed = history["soil_expected_tip_speed_mm_h"]
+    speed = measure.running_slope(time, history["length_mm"], SPEED_OVER_H)
+    allowed = measure.running_mean(time, history["soil_expected_tip_speed_mm_h"], SPEED_OVER_H)
     free = float(np.mean([model.tip_speed(length) for length in history["length_mm"]]))
-    panels[1].plot(time[1:], history["tip_speed_mm_h"][1:], color=draw.SIMULATION, linewidth=1.0)
-    panels[1].plot(time[1:], allowed[1:], **draw.THEORY_LINE)
+    panels[1].plot(time, speed, color=draw.SIMULATION, linewidth=1.0)
+    panels[1].plot(time, allowed, **draw.THEORY_LINE)
     panels[1].set_ylabel("speed of the tip (mm/h)")
-    panels[1].set_ylim(0.0, 1.2 * max(free, history["tip_speed_mm_h"][1:].max(initial=0.0)))
+    panels[1].set_ylim(0.0, 1.2 * max(free, speed.max()))
     panels[1].axhline(free, color=draw.THEORY, linewidth=0.6, linestyle=":")
     panels[1].text(time[-1], 1.02 * free, "without soil", ha="right", va="bottom", size=7)
 
@@ -289,7 +291,7 @@ def draw_soil(run: Run, model: Model, panels: list) -> list[str]:
     return [
         f"second half of the run: tip force {history['soil_tip_force_N'][late].mean():.3g} {unit}, axial force "
         f"{history['soil_axial_force_N'][late].mean():.3g} {unit} (arresting force {arresting:.3g} {unit})",
-        f"tip speed {history['tip_speed_mm_h'][late].mean():.4g} mm/h, as the forces allow {allowed[late].mean():.4g} mm/h, "
+        f"tip speed {speed[late].mean():.4g} mm/h, as the forces allow {allowed[late].mean():.4g} mm/h, "
         f"without soil {free:.4g} mm/h",
     ]
 
