@@ -334,10 +334,10 @@ def legend(figure, bottom: float, run: Run, growing: bool, strong_force: float |
         times, unit = run.times_h[run.window(measure.WINDOW_H)], "N" if run.dimension == 3 else "N/mm"
         width = soil.THICKEST_MM * soil.POINTS_PER_MM
         entries = [
-            (Line2D([], [], color=soil.CHAIN, linewidth=width, solid_capstyle="butt"), f"contact force of {strong_force:g} {unit}"),
-            (Line2D([], [], color=draw.SIMULATION, linewidth=1.3), f"simulation (D: mean of {times[0]:.3g}–{times[-1]:.3g} h)"),
-            (Line2D([], [], **draw.THEORY_LINE), "closed form with the soil's forces"),
-            (Line2D([], [], color=draw.THEORY, linewidth=0.6, linestyle=":"), "closed form without soil"),
+            (Line2D([], [], color=soil.CHAIN, linewidth=width, solid_capstyle="butt"), f"{strong_force:g} {unit}"),
+            (Line2D([], [], color=draw.SIMULATION, linewidth=1.3), f"simulation (D: {times[0]:.3g}–{times[-1]:.3g} h)"),
+            (Line2D([], [], **draw.THEORY_LINE), "closed form with these forces"),
+            (Line2D([], [], color=draw.THEORY, linewidth=0.6, linestyle=":"), "without soil"),
         ]
     elif growing:
         times = run.times_h[run.window(measure.WINDOW_H)]
