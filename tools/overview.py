@@ -7,6 +7,8 @@ in 3D the cells that the middle plane cuts. Below it the tip at the last time, w
 B-D, over the distance from the tip, means of the last hours with the closed form drawn in: axial strain rate (1/h),
 cell length (um), radius (mm). In a scene without growth: axial and radial strain against Eq. 8, and radius. Where a
 growing root meets obstacles: contact force (N, in 2D N/mm) and deflection over time, and axial strain rate.
+In a soil of grains, A is the root among them at the last time, with a line at every contact, as thick as its force; B-D are
+the soil's force on the root, the tip's speed with the one that these forces allow, and the axial strain rate.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from rootsoil_tools import draw, measure
+from rootsoil_tools import draw, measure, soil
 from rootsoil_tools.runs import Frame, Run, RunError
 from rootsoil_tools.theory import Model, model_of
 
@@ -32,6 +34,8 @@ ROW_GAP = 2.5
 LABEL_WIDTH = 10.0
 TICKS_WIDTH = 13.0  # of a panel's tick labels and axis label
 ZOOM_MAX_HEIGHT = 34.0
+SOIL_MAX_HEIGHT = 110.0
+SPEED_OVER_H = 0.5  # the soil yields in jerks
 PROFILE_HEIGHT = 40.0
 PANEL_GAP = 16.0
 TIMES = 6
@@ -101,6 +105,34 @@ class Stack:
             axes.text(left - 1.5 * paper, middle, f"{frame.time_h:.3g} h", ha="right", va="center")
             last_offset = offset
         self.last_offset = last_offset
+
+
+class SoilView:
+    """The root among grains at the last time, in place of a Stack."""
+
+    def __init__(self, run: Run, frame: Frame):
+        self.run, self.frames = run, [frame]
+        low, high = soil.extent(frame)
+        position = frame["position"][:, :2]
+        half = float(frame["cell_axes"][:, 0].max()) / 2.0
+        self.low, self.high = np.minimum(low, position.min(axis=0) - half), np.maximum(high, position.max(axis=0) + half)
+        width, height = self.high - self.low
+        self.scale = min((PAGE_WIDTH - 2.0 * MARGIN) / width, SOIL_MAX_HEIGHT / height)
+        self.height = height * self.scale
+        self.strong = soil.strong_force(frame)
+
+    def draw(self, axes, colours) -> None:
+        """Into axes whose unit is 1 mm of root and whose origin is the panel's upper left corner."""
+        frame, paper = self.frames[0], 1.0 / self.scale
+        axes.set(xlim=(0.0, (PAGE_WIDTH - 2.0 * MARGIN) * paper), ylim=(-self.height * paper, 0.0))
+        axes.axis("off")
+        middle = 0.5 * (PAGE_WIDTH - 2.0 * MARGIN) * paper
+        offset = (middle - 0.5 * (self.low[0] + self.high[0]), -self.high[1])
+        bodies = [o for o in self.run.scene["soil"].get("obstacle", []) if o["shape"] in ("box", "plate", "stone")]
+        soil.draw_grains(axes, frame, self.run.dimension, offset)
+        draw.draw_obstacles(axes, [soil.rigid_shape(o) for o in bodies], (*self.low, *self.high), offset)
+        soil.draw_force_chains(axes, frame, self.run.dimension, self.strong, offset)
+        draw.draw_cells(axes, frame, self.run.dimension, colours, offset, edge_mm=0.06)
 
 
 class Zoom:
@@ -222,6 +254,48 @@ def draw_contact(run: Run, model: Model, panels: list) -> list[str]:
     ]
 
 
+def draw_soil(run: Run, model: Model, panels: list) -> list[str]:
+    """The soil's force on the root, the tip's speed with what these forces allow, axial strain rate; returns lines."""
+    history = run.history()
+    time, unit = history["time_h"], "N" if run.dimension == 3 else "N/mm"
+    arresting = measure.arresting_force(model, run)
+    for name, colour, label in (("axial", draw.DATA, "whole root"), ("tip", draw.SIMULATION, "tip")):
+        panels[0].plot(time, history[f"soil_{name}_force_N"], color=colour, linewidth=1.0, label=label)
+    panels[0].axhline(arresting, **draw.THEORY_LINE)
+    panels[0].text(time[-1], 1.02 * arresting, "arrests the root", ha="right", va="bottom", size=7)
+    panels[0].set_ylim(0.0, 1.2 * max(arresting, history["soil_axial_force_N"].max()))
+    panels[0].set_ylabel(f"axial force of the soil ({unit})")
+    panels[0].legend(frameon=False, loc="upper left", bbox_to_anchor=(0.0, 0.84), handlelength=1.4, borderpad=0.0)
+
+    speed = measure.running_slope(time, history["length_mm"], SPEED_OVER_H)
+    allowed = measure.running_mean(time, history["soil_expected_tip_speed_mm_h"], SPEED_OVER_H)
+    free = float(np.mean([model.tip_speed(length) for length in history["length_mm"]]))
+    panels[1].plot(time, speed, color=draw.SIMULATION, linewidth=1.0)
+    panels[1].plot(time, allowed, **draw.THEORY_LINE)
+    panels[1].set_ylabel("speed of the tip (mm/h)")
+    panels[1].set_ylim(0.0, 1.2 * max(free, speed.max()))
+    panels[1].axhline(free, color=draw.THEORY, linewidth=0.6, linestyle=":")
+    panels[1].text(time[-1], 1.02 * free, "without soil", ha="right", va="bottom", size=7)
+
+    length = float(run.frame(-1)["distance_to_tip"].max())
+    zone = model.growth_zone(length)
+    edges = measure.edges_of(min(1.2 * zone, length), measure.bin_width(run.frame(-1), run.dimension, zone))
+    s = np.linspace(0.0, edges[-1], 600)
+    draw.draw_profile(panels[2], measure.growth_profiles(run, edges)["axial_strain_rate"])
+    panels[2].plot(s, model.axial_rate(s), color=draw.THEORY, linewidth=0.6, linestyle=":")
+    panels[2].set_ylabel("axial strain rate (1/h)")
+    for panel, end, label in zip(panels, (time[-1], time[-1], s[-1]), ("time (h)", "time (h)", DISTANCE)):
+        panel.set_xlim(0.0, end)
+        panel.set_xlabel(label)
+    late = time > 0.5 * time[-1]
+    return [
+        f"second half of the run: tip force {history['soil_tip_force_N'][late].mean():.3g} {unit}, axial force "
+        f"{history['soil_axial_force_N'][late].mean():.3g} {unit} (arresting force {arresting:.3g} {unit})",
+        f"tip speed {speed[late].mean():.4g} mm/h, as the forces allow {allowed[late].mean():.4g} mm/h, "
+        f"without soil {free:.4g} mm/h",
+    ]
+
+
 def draw_strain(run: Run, model: Model, panels: list) -> list[str]:
     """Axial and radial strain against Eq. 8, and radius; returns lines to print."""
     first, last = run.frame(0), run.frame(-1)
@@ -254,9 +328,18 @@ def draw_strain(run: Run, model: Model, panels: list) -> list[str]:
     return said
 
 
-def legend(figure, bottom: float, run: Run, growing: bool) -> None:
-    """One line above the panels that says what is drawn how."""
-    if growing:
+def legend(figure, bottom: float, run: Run, growing: bool, strong_force: float | None) -> None:
+    """One line above the panels that says what is drawn how; in a soil with the force of the thickest lines."""
+    if strong_force is not None:
+        times, unit = run.times_h[run.window(measure.WINDOW_H)], "N" if run.dimension == 3 else "N/mm"
+        width = soil.THICKEST_MM * soil.POINTS_PER_MM
+        entries = [
+            (Line2D([], [], color=soil.CHAIN, linewidth=width, solid_capstyle="butt"), f"{strong_force:g} {unit}"),
+            (Line2D([], [], color=draw.SIMULATION, linewidth=1.3), f"simulation (D: {times[0]:.3g}–{times[-1]:.3g} h)"),
+            (Line2D([], [], **draw.THEORY_LINE), "closed form with these forces"),
+            (Line2D([], [], color=draw.THEORY, linewidth=0.6, linestyle=":"), "without soil"),
+        ]
+    elif growing:
         times = run.times_h[run.window(measure.WINDOW_H)]
         closed_form = "closed form" + ("" if run.scene.get("obstacle") else " (radius: steady, from the dot)")
         period = f"{times[0]:.3g}–{times[-1]:.3g} h" if len(times) > 1 else f"{times[-1]:.3g} h"
@@ -304,11 +387,12 @@ def draw_overview(run: Run, out: Path) -> list[str]:
     draw.use_style()
     model = model_of(run.scene, float(run.times_h[-1]))
     growing = model.growth is not None
-    stack = Stack(run)
-    last = stack.frames[-1]
+    last = run.frame(-1)
+    in_soil = growing and soil.has_grains(last)
+    stack = SoilView(run, last) if in_soil else Stack(run)
     cell_paper = float(np.median(last["cell_axes"][:, 1])) * stack.scale
-    contact = growing and bool(np.any(run.history().get("contact_force_N", np.zeros(1)) > 0.0))
-    zoom = Zoom(run, last) if cell_paper < 0.8 and not contact else None
+    contact = growing and not in_soil and bool(np.any(run.history().get("contact_force_N", np.zeros(1)) > 0.0))
+    zoom = Zoom(run, last) if cell_paper < 0.8 and not contact and not in_soil else None
     colours = draw.division_colours(int(max(frame["generation"].max() for frame in stack.frames)))
 
     below = 11.0  # tick labels and axis label
@@ -345,14 +429,14 @@ def draw_overview(run: Run, out: Path) -> list[str]:
     panels = [draw.place(figure, left, below, width, PROFILE_HEIGHT) for left in lefts]
     for panel in panels:
         panel.set_xlabel(DISTANCE)
-    draw_panels = draw_contact if contact else draw_growth if growing else draw_strain
+    draw_panels = draw_soil if in_soil else draw_contact if contact else draw_growth if growing else draw_strain
     said = draw_panels(run, model, panels)
     for left, panel, name in zip(lefts, panels, "BCD"):
         low, high = panel.get_ylim()
         if panel.get_yscale() == "linear":
             panel.set_ylim(bottom=low if low < -0.1 * high else 0.0)
         draw.letter(figure, left - TICKS_WIDTH, below + PROFILE_HEIGHT + 1.0, name)
-    legend(figure, below + PROFILE_HEIGHT + 7.0, run, growing)
+    legend(figure, below + PROFILE_HEIGHT + 7.0, run, growing, stack.strong if in_soil else None)
 
     temporary = out.with_name(f".{out.name}.part{out.suffix}")
     figure.savefig(temporary, dpi=draw.DOTS_PER_INCH)

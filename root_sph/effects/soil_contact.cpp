@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
@@ -53,6 +54,41 @@ template <int Dim>
 MarkerSize marker_size(const ParticleStore<Dim>& cells, const SoilContactParameters& p) {
   const double radius = p.marker_radius_mm ? *p.marker_radius_mm : median_cell_size_mm<Dim>(cells.volume.values());
   return {radius, p.marker_spacing * radius};
+}
+
+/// A column of vectors or tensors, row by row.
+template <class T, std::size_t N>
+std::vector<T> flat(const std::vector<std::array<T, N>>& rows) {
+  std::vector<T> numbers;
+  numbers.reserve(N * rows.size());
+  for (const auto& row : rows) numbers.insert(numbers.end(), row.begin(), row.end());
+  return numbers;
+}
+
+/// Of the two columns of pairs, the one.
+std::vector<std::int64_t> member(const std::vector<std::array<std::int64_t, 2>>& pairs, std::size_t which) {
+  std::vector<std::int64_t> ids;
+  for (const auto& pair : pairs) ids.push_back(pair[which]);
+  return ids;
+}
+
+/// Grains and contacts of a soil, for the frames; a soil without grains adds nothing.
+void add_soil_points(SoilSnapshot soil, std::vector<PointSet>& points) {
+  if (soil.id.empty()) return;
+  for (auto& s : soil.stress_MPa) std::rotate(s.begin() + 3, s.end() - 1, s.end());  // frames: xx yy zz xy yz xz
+  points.push_back({"grains",
+                    {{"position", "mm", "centre of the grain", 3, flat(soil.position_mm)},
+                     {"radius", "mm", "radius of the grain", 1, std::move(soil.radius_mm)},
+                     {"velocity", "mm/h", "velocity of the grain", 3, flat(soil.velocity_mm_h)},
+                     {"contacts", "1", "bodies that the grain touches", 1, std::move(soil.contacts)},
+                     {"stress", "MPa", "mean stress in the grain, tension positive", 6, flat(soil.stress_MPa)},
+                     {"grain_id", "1", "unique number of the grain", 1, std::move(soil.id)}}});
+  constexpr const char* who = "grain_id of the body; -1 root, -2 wall, -3 obstacle";
+  points.push_back({"soil_contacts",
+                    {{"position", "mm", "where two bodies touch", 3, flat(soil.contact_position_mm)},
+                     {"force", "N", "on the first body (2D: per mm of depth)", 3, flat(soil.contact_force_N)},
+                     {"first_id", "1", who, 1, member(soil.contact_ids, 0)},
+                     {"second_id", "1", who, 1, member(soil.contact_ids, 1)}}});
 }
 
 /// Mean cross-section of the free tissue, mm^(Dim-1).
@@ -384,6 +420,7 @@ void SoilContactEffect<Dim>::add_points(std::vector<PointSet>& points) const {
                      {"force", "N", "of the soil on the marker, mean over the latest interval", 3, force},
                      {"contact_stiffness", "N/mm", "of the marker's contacts", 1, stiffness},
                      {"marker_id", "1", "unique number of the marker", 1, surface_.ids()}}});
+  if (interval_ > 0) add_soil_points(port_->snapshot(), points);  // before, the root has not been put in
 }
 
 template <int Dim>

@@ -118,7 +118,10 @@ Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& fo
       log_(folder.path() / "run.log", options.quiet) {
   const Tissue<Dim>& tissue = model().solver.tissue();
   if (make_soil) {
-    Soil soil = make_soil(scene, soil_start<Dim>(scene, model().solver));
+    SoilStart start = soil_start<Dim>(scene, model().solver);
+    start.log_file = (folder_ / "soil.log").string();
+    start.progress = [this](const std::string& text) { log_.info("soil: {}", text); };
+    Soil soil = make_soil(scene, start);
     if (soil.port) add_soil_contact<Dim>(scene, model(), std::move(soil.contact), std::move(soil.port));
   }
   cells_start_ = static_cast<std::int64_t>(tissue.cells.size());

@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import time
 import traceback
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from message import NAMES, TABLES, Channel, Packet, column_offset  # noqa: E402
 from soil_file import Refused  # noqa: E402
 
 SOCKET_FD, BLOCK_FD = 3, 4
+PROGRESS_EVERY_S = 5.0
 
 
 class Driver:
@@ -25,10 +27,14 @@ class Driver:
     def __init__(self, channel: Channel):
         self.channel = channel
         self.soil: Any = None
+        self.said = -PROGRESS_EVERY_S
 
     def progress(self, text: str) -> None:
-        """How far a long task is."""
-        self.channel.answer("progress", text)
+        """How far a long task is; not more often than is worth reading."""
+        now = time.monotonic()
+        if now - self.said >= PROGRESS_EVERY_S:
+            self.said = now
+            self.channel.answer("progress", text)
 
     def hello(self, _: Packet) -> None:
         """Loads YADE, which takes some seconds."""

@@ -359,8 +359,9 @@ class Soil:
 
         self.work -= float((force[:n] * velocity).sum()) * duration_h / layer
         self._count(interval, substeps, velocity, force[n:] / layer)
-        self.numbers["soil_dem_s"] = dem_s
-        self.numbers["soil_exchange_s"] = time.perf_counter() - began - dem_s
+        numbers = self.numbers
+        numbers["soil_dem_s"] = numbers.get("soil_dem_s", 0.0) + dem_s
+        numbers["soil_exchange_s"] = numbers.get("soil_exchange_s", 0.0) + time.perf_counter() - began - dem_s
         return self.numbers
 
     @staticmethod
@@ -478,7 +479,7 @@ class Soil:
         number = {b.id: k for k, b in enumerate(soil)}
         ids, place, force = [], [], []
         contacts = np.zeros(len(soil), np.int64)
-        roots, walls = set(self.slots.values()), set(self.wall_ids)
+        roots, walls, layer = set(self.slots.values()), set(self.wall_ids), self.recipe["layer_mm"]
 
         def name(i: int) -> int:
             return i if i in number else -1 if i in roots else -2 if i in walls else -3
@@ -489,7 +490,8 @@ class Soil:
             ids.append((name(c.id1), name(c.id2)))
             at, total = c.geom.contactPoint, c.phys.normalForce + c.phys.shearForce
             place.append((at[0], at[1], at[2]))
-            force.append((-total[0], -total[1], -total[2]))  # YADE's is the one on the second body
+            # YADE's is the one on the second body; in 2D per mm of depth
+            force.append((-total[0] / layer, -total[1] / layer, -total[2] / layer))
             for i in (c.id1, c.id2):
                 if i in number:
                     contacts[number[i]] += 1

@@ -172,11 +172,16 @@ def digest(folder: Path) -> dict[str, str]:
 
 
 def frames(run: Path) -> list[dict[str, np.ndarray]]:
-    """Every dataset of every frame of run.h5, in order, with the frame's time and step."""
+    """Every dataset of every frame of run.h5, in order ("grains/position"), with the frame's time and step."""
+
+    def datasets(group: h5py.Group) -> dict[str, np.ndarray]:
+        found: dict[str, np.ndarray] = {}
+        group.visititems(lambda name, item: found.__setitem__(name, item[()]) if isinstance(item, h5py.Dataset) else None)
+        return found
+
     with h5py.File(run / "run.h5") as file:
         return [
-            {name: dataset[()] for name, dataset in group.items()}
-            | {name: np.asarray(group.attrs[name]) for name in ("time_h", "step", "cells")}
+            datasets(group) | {name: np.asarray(group.attrs[name]) for name in ("time_h", "step", "cells")}
             for _, group in sorted(file["frames"].items())
         ]
 

@@ -147,7 +147,9 @@ TEST(Markers, OnlyThoseNearTheSoilAreShownToItAndComeBackUnderNewIds) {
   EXPECT_LT(shown(2).size(), shown(0).size());
   EXPECT_EQ(shown(5).size(), shown(0).size());
   for (const std::int64_t id : shown(5)) {
-    if (!shown(2).contains(id)) EXPECT_FALSE(shown(0).contains(id)) << id;
+    if (!shown(2).contains(id)) {
+      EXPECT_FALSE(shown(0).contains(id)) << id;
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include "root_sph/io/checkpoint.hpp"
 #include "root_sph/io/files.hpp"
@@ -99,6 +100,71 @@ TEST(SoilRun, WithoutASoilNothingOfItExists) {
   EXPECT_EQ(read_whole_file(folder / "none/history.csv").find("soil"), std::string::npos);
   EXPECT_EQ(read_whole_file(folder / "none/summary.json").find("\"soil"), std::string::npos);
   EXPECT_TRUE(state_files(folder / "none").empty());
+}
+
+/// A plate made of two grains that touch each other, the root and a wall.
+class Grains final : public SoilPort {
+ public:
+  explicit Grains(const twins::HalfSpaceParameters& p) : plate_(p) {}
+  SurfaceForces advance(const SurfaceMotion& motion) override { return plate_.advance(motion); }
+  std::vector<std::string> number_names() const override { return plate_.number_names(); }
+  void save(const fs::path& file) override { plate_.save(file); }
+  void load(const fs::path& file) override { plate_.load(file); }
+  SoilSnapshot snapshot() override {
+    return {.id = {7, 9},
+            .position_mm = {{1, 2, 3}, {4, 5, 6}},
+            .velocity_mm_h = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}},
+            .radius_mm = {0.5, 0.25},
+            .contacts = {2, 2},
+            .stress_MPa = {{1, 2, 3, 23, 13, 12}, {4, 5, 6, 56, 46, 45}},
+            .contact_position_mm = {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}},
+            .contact_force_N = {{-1, 0, 0}, {-2, 0.5, 0}, {-3, 0, 0.25}},
+            .contact_ids = {{7, -1}, {7, 9}, {9, -2}}};
+  }
+
+ private:
+  twins::HalfSpace plate_;
+};
+
+TEST(SoilRun, FramesHoldGrainsAndContacts) {
+  const TemporaryFolder folder;
+  const auto grains = [](const Scene& scene, const SoilStart& start) {
+    Soil soil = plate_soil(scene, start);
+    soil.port = std::make_unique<Grains>(plate(scene, 5.0));
+    return soil;
+  };
+  ASSERT_EQ(run(folder / "run", grains, false, 0.1), 0);
+  ASSERT_EQ(read_frame(folder / "run/run.h5", 0).points.size(), 1u);  // before the root is put in, markers only
+  const Frame frame = read_frame(folder / "run/run.h5", 1);
+  const auto column = [&](const std::string& set, const std::string& name) -> const FrameColumn& {
+    const auto points = std::find_if(frame.points.begin(), frame.points.end(), [&](const auto& p) { return p.name == set; });
+    if (points == frame.points.end()) throw std::runtime_error("no points " + set);
+    const auto& columns = points->columns;
+    const auto found = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
+    if (found == columns.end()) throw std::runtime_error("no column " + name);
+    return *found;
+  };
+  const auto reals = [&](const std::string& set, const std::string& name) {
+    return std::get<std::vector<double>>(column(set, name).values);
+  };
+  const auto whole = [&](const std::string& set, const std::string& name) {
+    return std::get<std::vector<std::int64_t>>(column(set, name).values);
+  };
+  using Reals = std::vector<double>;
+  using Whole = std::vector<std::int64_t>;
+  EXPECT_EQ(reals("grains", "position"), (Reals{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(reals("grains", "velocity"), (Reals{0.1, 0.2, 0.3, 0.4, 0.5, 0.6}));
+  EXPECT_EQ(reals("grains", "radius"), (Reals{0.5, 0.25}));
+  EXPECT_EQ(reals("grains", "stress"), (Reals{1, 2, 3, 12, 23, 13, 4, 5, 6, 45, 56, 46}));  // xx yy zz xy yz xz
+  EXPECT_EQ(whole("grains", "contacts"), (Whole{2, 2}));
+  EXPECT_EQ(whole("grains", "grain_id"), (Whole{7, 9}));
+  EXPECT_EQ(reals("soil_contacts", "position"), (Reals{1, 0, 0, 2, 0, 0, 3, 0, 0}));
+  EXPECT_EQ(reals("soil_contacts", "force"), (Reals{-1, 0, 0, -2, 0.5, 0, -3, 0, 0.25}));
+  EXPECT_EQ(whole("soil_contacts", "first_id"), (Whole{7, 7, 9}));
+  EXPECT_EQ(whole("soil_contacts", "second_id"), (Whole{-1, 9, -2}));
+  const std::string xdmf = read_whole_file(folder / "run/run.xmf");
+  EXPECT_NE(xdmf.find("/grains/radius"), std::string::npos);
+  EXPECT_NE(xdmf.find("/soil_contacts/force"), std::string::npos);
 }
 
 /// A plate that fails in one interval.

@@ -152,6 +152,20 @@ def arresting_force(model: Model, run: Run) -> float:
     return model.p * (1.0 - (run.dimension - 1) * model.nu_A) * section
 
 
+def running_mean(time: np.ndarray, values: np.ndarray, over: float) -> np.ndarray:
+    """Mean of the values within `over`/2 of each time; the first row, before anything has moved, does not count."""
+    near = (np.abs(time[:, None] - time[None, :]) <= over / 2.0 + 1e-9) & (np.arange(len(time)) > 0)
+    return (near @ values) / np.maximum(near.sum(axis=1), 1)
+
+
+def running_slope(time: np.ndarray, values: np.ndarray, over: float) -> np.ndarray:
+    """Slope of the straight line through the values within `over`/2 of each time."""
+    near = (np.abs(time[:, None] - time[None, :]) <= over / 2.0 + 1e-9).astype(float)
+    count = near.sum(axis=1)
+    t, v = near @ time / count, near @ values / count
+    return (near @ (time * values) / count - t * v) / np.maximum(near @ time**2 / count - t**2, 1e-12)
+
+
 def tip_angle(frame: Frame, dimension: int) -> float:
     """Angle (rad) between the x axis and the material axis of the last 0.4 radii of the root."""
     distance = frame["distance_to_tip"] - frame["distance_to_tip"].min()

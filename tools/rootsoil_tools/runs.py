@@ -6,7 +6,7 @@ from __future__ import annotations
 import csv
 import json
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import h5py
@@ -23,6 +23,7 @@ class Frame:
 
     time_h: float
     fields: dict[str, np.ndarray]
+    points: dict[str, dict[str, np.ndarray]] = field(default_factory=dict)  # beside the cells: markers, grains ...
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.fields:
@@ -91,7 +92,12 @@ class Run:
         with self._open() as file:
             group = file["frames"][self._groups[index]]
             fields = {name: dataset[()] for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
-        return Frame(float(self.times_h[index]), fields)
+            points = {
+                name: {column: dataset[()] for column, dataset in subgroup.items()}
+                for name, subgroup in group.items()
+                if isinstance(subgroup, h5py.Group)
+            }
+        return Frame(float(self.times_h[index]), fields, points)
 
     def window(self, hours: float, most: int = 40) -> list[int]:
         """Indices of at most `most` frames in the last `hours` h, but in no more than the last third of the run."""
