@@ -263,9 +263,9 @@ def draw_soil(run: Run, model: Model, panels: list) -> list[str]:
         panels[0].plot(time, history[f"soil_{name}_force_N"], color=colour, linewidth=1.0, label=label)
     panels[0].axhline(arresting, **draw.THEORY_LINE)
     panels[0].text(time[-1], 1.02 * arresting, "arrests the root", ha="right", va="bottom", size=7)
-    panels[0].set_ylim(0.0, 1.2 * max(arresting, history["soil_axial_force_N"].max()))
+    panels[0].set_ylim(0.0, 1.5 * max(arresting, history["soil_axial_force_N"].max()))
     panels[0].set_ylabel(f"axial force of the soil ({unit})")
-    panels[0].legend(frameon=False, loc="upper left", bbox_to_anchor=(0.0, 0.84), handlelength=1.4, borderpad=0.0)
+    panels[0].legend(frameon=False, loc="upper left", handlelength=1.4, borderpad=0.0)  # above the arresting force
 
     speed = measure.running_slope(time, history["length_mm"], SPEED_OVER_H)
     allowed = measure.running_mean(time, history["soil_expected_tip_speed_mm_h"], SPEED_OVER_H)
