@@ -273,7 +273,7 @@ TEST(Thrust, LongerIntervalsStopAtTheSameForce) {
 TEST(Thrust, In3DGrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const SoilContactParameters parameters = predicting();
   SoilRun<3> run({"scene.dimension=3", "root.length_mm=0.8", "root.cell_size_mm=0.04", "numerics.step_h=2e-4",
-                  "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
+                  "numerics.window_steps=5", "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
                  parameters, [](const Scene& s) {
                    twins::HalfSpaceParameters p = plate(s, 0.3, 0.0);
                    p.backing_N_mm = 0.5;
