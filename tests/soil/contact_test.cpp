@@ -147,58 +147,54 @@ TEST(Markers, OnlyThoseNearTheSoilAreShownToItAndComeBackUnderNewIds) {
   EXPECT_LT(shown(2).size(), shown(0).size());
   EXPECT_EQ(shown(5).size(), shown(0).size());
   for (const std::int64_t id : shown(5)) {
-    if (!shown(2).contains(id)) {
-      EXPECT_FALSE(shown(0).contains(id)) << id;
-    }
+    if (!shown(2).contains(id)) EXPECT_FALSE(shown(0).contains(id)) << id;
   }
 }
 
 // ---- thrust ---------------------------------------------------------------------------------------
 
-/// A plane on a spring: the thrust rises slowly to the arresting one, and at every thrust on the way the root grows as
-/// the closed form says. A growing root that is arrested on a smooth plate bends aside sooner or later, so the plate is
-/// rough and the midline damped: neither takes part in the axial force.
+/// A plane on a spring: the thrust rises slowly, and at every thrust on the way the root grows as the closed form says:
+/// a straight line that reaches 0 at p (1 - nu_A) W. Friction and midline damping hold the root straight: on a smooth
+/// plate it bends aside from 0.8 of that thrust on, and breaks after 3.6 h.
 TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
-  const SoilContactParameters parameters = predicting();
-  SoilRun<2> run({"numerics.step_h=1e-4", "numerics.window_steps=10", "numerics.midline_damping_per_h=20"}, parameters,
+  SoilRun<2> run({"numerics.step_h=1e-4", "numerics.window_steps=10", "numerics.midline_damping_per_h=5"}, predicting(),
                  [](const Scene& s) {
-    twins::HalfSpaceParameters p = plate(s, 2.0, 0.0);
-    p.friction = 0.5;
-    p.backing_N_mm = 2.5;
-    return std::make_unique<twins::HalfSpace>(p);
-  });
+                   twins::HalfSpaceParameters p = plate(s, 2.0, 0.0);
+                   p.backing_N_mm = 1.5;
+                   p.friction = 0.5;
+                   return std::make_unique<twins::HalfSpace>(p);
+                 });
   const double free_speed = closed_form_flow<2>(run.scene, run.scene.root.length_mm).tip_speed_mm_h;
-  const double arrest = arrest_N(run);
-  double worst = 0.0, from_mm = 0.0, from_h = 0.0, impulse = 0.0;
-  run.advance_to(0.3);
-  from_mm = run.solver.axis().length_mm();
-  from_h = run.tissue.time_h;
-  double slowest = 1.0, fastest = 0.0;
-  run.advance_to(4.0, [&] {
+  double from_mm = run.solver.axis().length_mm(), from_h = 0.0, impulse = 0.0, worst = 0.0;
+  double n = 0.0, sf = 0.0, sv = 0.0, sff = 0.0, sfv = 0.0, slowest = 1.0, fastest = 0.0;
+  run.advance_to(3.0, [&] {
     impulse += run.axial_force_N() * run.solver.window_h();
     const double hours = run.tissue.time_h - from_h;
-    if (hours < 0.3 - 1e-9) return;
-    const double speed = (run.solver.axis().length_mm() - from_mm) / hours / free_speed;
-    const double theory = 1.0 - impulse / hours / arrest_N(run);
-    worst = std::max(worst, std::abs(speed - theory));
-    slowest = std::min(slowest, speed);
-    fastest = std::max(fastest, speed);
+    if (hours < 0.2 - 1e-9) return;
+    const double v = (run.solver.axis().length_mm() - from_mm) / hours / free_speed;
+    const double f = impulse / hours / arrest_N(run);
+    n += 1.0, sf += f, sv += v, sff += f * f, sfv += f * v;
+    worst = std::max(worst, std::abs(v - (1.0 - f)));
+    slowest = std::min(slowest, v);
+    fastest = std::max(fastest, v);
     from_mm = run.solver.axis().length_mm();
     from_h = run.tissue.time_h;
     impulse = 0.0;
   });
-  const double root_work = run.contact.root_work_Nmm(), soil_work = run.contact.soil_work_Nmm();
-  record("arrest force before, N/mm", arrest);
-  record("final force/arrest force", run.axial_force_N() / arrest_N(run));
+  const double slope = (n * sfv - sf * sv) / (n * sff - sf * sf), at_rest = (sv - slope * sf) / n;
+  const double work = run.contact.root_work_Nmm() / run.contact.soil_work_Nmm();
   record("speed/free speed, fastest", fastest);
   record("speed/free speed, slowest", slowest);
   record("speed, worst deviation/free speed", worst);
-  record("work, root/soil", root_work / soil_work);
-  EXPECT_GT(fastest, 0.5);
-  EXPECT_LT(slowest, 0.05);
+  record("line's speed at no thrust/free speed", at_rest);
+  record("line's thrust at no speed/arrest force", -at_rest / slope);
+  record("work, root/soil", work);
+  EXPECT_GT(fastest, 0.85);
+  EXPECT_LT(slowest, 0.15);
   EXPECT_LT(worst, 0.03);
-  EXPECT_NEAR(run.axial_force_N() / arrest_N(run), 1.0, 0.03);
-  EXPECT_NEAR(root_work / soil_work, 1.0, 0.01);
+  EXPECT_NEAR(at_rest, 1.0, 0.03);
+  EXPECT_NEAR(-at_rest / slope, 1.0, 0.03);
+  EXPECT_NEAR(work, 1.0, 0.01);
 }
 
 struct PlateForce {
@@ -276,12 +272,10 @@ TEST(Thrust, LongerIntervalsStopAtTheSameForce) {
 /// The same in 3D, by a shell of markers: p (1 - 2 nu_A) times the section.
 TEST(Thrust, In3DGrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const SoilContactParameters parameters = predicting();
-  SoilRun<3> run({"scene.dimension=3", "root.length_mm=0.8", "root.cell_size_mm=0.04", "numerics.step_h=1e-4",
-                  "numerics.window_steps=10", "numerics.midline_damping_per_h=20", "growth.mature_at_mm=0.6",
-                  "growth.mature_width_mm=0.1"},
+  SoilRun<3> run({"scene.dimension=3", "root.length_mm=0.8", "root.cell_size_mm=0.04", "numerics.step_h=2e-4",
+                  "numerics.window_steps=5", "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
                  parameters, [](const Scene& s) {
                    twins::HalfSpaceParameters p = plate(s, 0.3, 0.0);
-                   p.friction = 0.5;
                    p.backing_N_mm = 0.5;
                    return std::make_unique<twins::HalfSpace>(p);
                  });
