@@ -1,16 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The only run loop.
-#include <fmt/format.h>
-#include <omp.h>
-#include <sys/resource.h>
-
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <csignal>
-#include <memory>
-#include <nlohmann/json.hpp>
-
 #include "root_sph/core/errors.hpp"
 #include "root_sph/effects/probe.hpp"
 #include "root_sph/io/checkpoint.hpp"
@@ -27,6 +16,17 @@
 #include "root_sph/scene/run_log.hpp"
 #include "root_sph/scene/soil_start.hpp"
 #include "root_sph/scene/write_scene.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <memory>
 
 namespace rootsoil {
 namespace {
@@ -136,20 +136,21 @@ Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& fo
     write_checkpoint_file();  // first of all: killed at any later instant, --resume goes on
   }
   write_text_atomically(folder_ / "scene.toml", resolved_toml(scene_));
-  series_ = std::make_unique<SeriesWriter>(folder_,
-                                           SeriesMetadata{{"program", "rootsoil"},
-                                                          {"version", ROOTSOIL_VERSION},
-                                                          {"scene", scene_.scene.name},
-                                                          {"dimension", std::to_string(Dim)}},
-                                           continue_h);
+  series_ = std::make_unique<SeriesWriter>(
+      folder_,
+      SeriesMetadata{{"program", "rootsoil"},
+                     {"version", ROOTSOIL_VERSION},
+                     {"scene", scene_.scene.name},
+                     {"dimension", std::to_string(Dim)}},
+      continue_h);
   history_ = std::make_unique<HistoryWriter>(folder_ / "history.csv", history_columns<Dim>(model()), continue_h);
   for (const auto& effect : model().effects) {
     auto* probe = dynamic_cast<ProbeEffect<Dim>*>(effect.get());
     if (!probe) continue;
     std::vector<std::string> columns = ProbeEffect<Dim>::columns();
     columns.insert(columns.begin(), "time_h");
-    probe_files_.push_back(
-        {probe, std::make_unique<HistoryWriter>(folder_ / ("probe_" + probe->name() + ".csv"), columns, continue_h)});
+    probe_files_.push_back({probe, std::make_unique<HistoryWriter>(folder_ / ("probe_" + probe->name() + ".csv"),
+                                                                   columns, continue_h)});
   }
 }
 
@@ -358,8 +359,8 @@ ExitStatus Run<Dim>::go() {
   log_.info("done: {} cells after {} divisions, root {:.4f} mm, {:.1f} s, {:.0f} MB", tissue.cells.size(), divisions(),
             solver.axis().length_mm(), wall_s_, peak_memory_mb());
   log_.info("inertia error {:.2g} % of p at the end, at most {:.2g} %; discretisation error about {:.2g} % ({})",
-            100.0 * inertia_error_, 100.0 * inertia_error_max_, 100.0 * discretisation_error(scene_.numerics.accuracy),
-            scene_.numerics.accuracy);
+            100.0 * inertia_error_, 100.0 * inertia_error_max_,
+            100.0 * discretisation_error(scene_.numerics.accuracy), scene_.numerics.accuracy);
   for (const auto& effect : model().effects) {
     if (const std::string remark = effect->closing_remark(); !remark.empty()) log_.info("{}", remark);
   }
