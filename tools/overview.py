@@ -267,8 +267,9 @@ def draw_soil(run: Run, model: Model, panels: list) -> list[str]:
     panels[0].set_ylabel(f"axial force of the soil ({unit})")
     panels[0].legend(frameon=False, loc="upper left", handlelength=1.4, borderpad=0.0)  # above the arresting force
 
-    speed = measure.running_slope(time, history["length_mm"], SPEED_OVER_H)
-    allowed = measure.running_mean(time, history["soil_expected_tip_speed_mm_h"], SPEED_OVER_H)
+    over = max(SPEED_OVER_H, 2.0 * float(np.median(np.diff(time))))  # at least three rows
+    speed = measure.running_slope(time, history["length_mm"], over)
+    allowed = measure.running_mean(time, history["soil_expected_tip_speed_mm_h"], over)
     free = float(np.mean([model.tip_speed(length) for length in history["length_mm"]]))
     panels[1].plot(time, speed, color=draw.SIMULATION, linewidth=1.0)
     panels[1].plot(time, allowed, **draw.THEORY_LINE)

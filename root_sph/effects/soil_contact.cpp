@@ -430,10 +430,12 @@ std::vector<std::pair<std::string, double>> SoilContactEffect<Dim>::history() co
     contacts += f.isZero(0.0) ? 0.0 : 1.0;
     load += f.norm();
   }
+  const double tip_N = thrust_N(*parameters_.tip_length_mm);
   std::vector<std::pair<std::string, double>> row{
       {"soil_markers", static_cast<double>(load_.size())},
       {"soil_contacts", contacts},
-      {"soil_tip_force_N", thrust_N(*parameters_.tip_length_mm)},
+      {"soil_tip_force_N", tip_N},
+      {"soil_tip_resistance_MPa", tip_N / section<Dim>(solver_)},  // what a penetrometer's Q is for the root
       {"soil_axial_force_N", thrust_N(std::numeric_limits<double>::infinity())},
       {"soil_load_N", load},
       {"soil_root_work_Nmm", sum_.root_work_Nmm},

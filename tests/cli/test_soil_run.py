@@ -97,6 +97,8 @@ def test_what_a_run_holds(root_in_soil: Program):
     assert last["grains/position"].shape == (grains, 3) and last["grains/stress"].shape == (grains, 6)
     assert row["soil_tip_force_N"] > 0.0 and row["soil_axial_force_N"] > 0.0 and row["soil_root_work_Nmm"] > 0.0
     assert 0.0 < row["soil_overlap_max"] < 0.1 and 0.0 < row["soil_inertial_number"] < 0.03
+    section = 2.0 * row["mean_radius_mm"]
+    assert row["soil_tip_resistance_MPa"] == pytest.approx(row["soil_tip_force_N"] / section, rel=1e-6)
     # every grain's contacts are among the listed ones, and the root is one of the bodies that they touch
     ids = np.concatenate([last["soil_contacts/first_id"], last["soil_contacts/second_id"]])
     for grain, count in zip(last["grains/grain_id"], last["grains/contacts"]):

@@ -137,7 +137,8 @@ TEST(SoilRun, FramesHoldGrainsAndContacts) {
   ASSERT_EQ(read_frame(folder / "run/run.h5", 0).points.size(), 1u);  // before the root is put in, markers only
   const Frame frame = read_frame(folder / "run/run.h5", 1);
   const auto column = [&](const std::string& set, const std::string& name) -> const FrameColumn& {
-    const auto points = std::find_if(frame.points.begin(), frame.points.end(), [&](const auto& p) { return p.name == set; });
+    const auto points =
+        std::find_if(frame.points.begin(), frame.points.end(), [&](const auto& p) { return p.name == set; });
     if (points == frame.points.end()) throw std::runtime_error("no points " + set);
     const auto& columns = points->columns;
     const auto found = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
