@@ -4,6 +4,7 @@ the socket as descriptor 3 and the shared block as descriptor 4."""
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import sys
@@ -40,6 +41,7 @@ class Driver:
         """Loads YADE, which takes some seconds."""
         import engine
 
+        gc.freeze()  # YADE's modules are many, and stay
         self.channel.answer("done", json.dumps({"engine": engine.VERSION, "python": sys.version.split()[0]}))
 
     def pack(self, _: Packet) -> None:

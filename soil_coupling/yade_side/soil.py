@@ -35,12 +35,14 @@ from engine import VERSION, O, utils, wrapper
 from soil_file import Refused, read_soil_file, write_soil_file
 
 SUBSTEPS_AT_LEAST = 10
-FORCE_SAMPLES = 10  # substeps at which forces are read, evenly spread over an interval
+FORCE_SAMPLES = 5  # substeps at which forces are read, evenly spread over an interval
 CHECK_EVERY = 20  # intervals between two looks at what is costly to see
 CARVE = 0.95  # a grain goes where it overlaps the root by more than the rest of its radius
 SETTLED = 0.02  # mean unbalanced over mean contact force, after the root has been put in
 SETTLE_BLOCKS, SETTLE_STEPS = 100, 200
 OVERLAP_AT_MOST = 0.5  # of two spheres, over the smaller radius: beyond it contact laws mean nothing
+COLLIDE = 2.0  # a squared speed that makes the collider look again: it does not see new markers and radii by itself
+NO_FORCE = vector((0.0, 0.0, 0.0))
 RUPTURE = "raise soil.E_MPa (250 times the stress on the tip keeps overlaps small), or exchange more often"
 
 
@@ -215,6 +217,7 @@ class Soil:
     def _rebind(self) -> None:
         """References into YADE; after every load."""
         self.newton = next(e for e in O.engines if isinstance(e, wrapper.NewtonIntegrator))
+        self.collider = next(e for e in O.engines if isinstance(e, wrapper.InsertionSortCollider))
         self.critical_step = self._substep()
         self.grain_count = len(grains())
         self.solid = solid_volume(self.recipe)
@@ -224,6 +227,25 @@ class Soil:
 
     def _list_markers(self) -> None:
         self.states = {marker: O.bodies[slot].state for marker, slot in self.slots.items()}
+        self.row_ids: list[int] | None = None
+
+    def _list_rows(self, ids: list[int]) -> None:
+        """A row for each marker, then walls and obstacles: their bodies and where they are."""
+        self.row_ids = ids
+        self.row_states = [self.states[m] for m in ids]
+        self.row_position = np.array([[p[0], p[1], p[2]] for p in (s.pos for s in self.row_states)]).reshape(-1, 3)
+        fixed = self.wall_ids[: 2 * self.recipe["dimension"]] + self.obstacle_ids
+        self.row_slots = [self.slots[m] for m in ids] + fixed
+        self.row_radius = np.array([O.bodies[self.slots[m]].shape.radius for m in ids])
+        self.near = self.in_touch = list(enumerate(self.row_slots))
+        self.collisions_seen = -1
+        self.newton.maxVelocitySq = COLLIDE
+
+    def _list_near(self) -> None:
+        """Rows whose bounds meet another body's. Between two runs of the collider nothing else can come into touch."""
+        self.collisions_seen = self.collider.numAction
+        around, markers = O.interactions.withBodyAll, len(self.row_states)
+        self.near = [(k, slot) for k, slot in enumerate(self.row_slots) if k >= markers or around(slot)]
 
     def _insert(self, marker: int, position: Any, radius: float) -> None:
         body = utils.sphere(vector(position), float(radius), material="root", dynamic=False)
@@ -235,24 +257,23 @@ class Soil:
 
     def _update_markers(self, ids: list[int], start: np.ndarray, radius: np.ndarray) -> None:
         """Erases, inserts, changes radii: in this order."""
-        present = set(ids)
-        changed = False
-        for marker in [m for m in self.slots if m not in present]:
-            slot = self.slots.pop(marker)
-            del self.states[marker]
-            O.bodies.erase(slot)
-            self.free_slots.append(slot)
-        for k, marker in enumerate(ids):
-            if marker not in self.slots:
-                self._insert(marker, start[k], radius[k])
-                changed = True
-            else:
-                shape = O.bodies[self.slots[marker]].shape
-                if shape.radius != radius[k]:
-                    shape.radius = float(radius[k])
-                    changed = True
-        if changed:
-            self.newton.maxVelocitySq = 2.0  # or the collider does not see new markers and radii
+        if ids != self.row_ids:
+            present = set(ids)
+            for marker in [m for m in self.slots if m not in present]:
+                slot = self.slots.pop(marker)
+                del self.states[marker]
+                O.bodies.erase(slot)
+                self.free_slots.append(slot)
+            for k, marker in enumerate(ids):
+                if marker not in self.slots:
+                    self._insert(marker, start[k], radius[k])
+            self._list_rows(ids)
+        other = np.flatnonzero(radius != self.row_radius).tolist()
+        for k in other:
+            O.bodies[self.row_slots[k]].shape.radius = float(radius[k])
+        if other:
+            self.row_radius = radius.copy()
+            self.newton.maxVelocitySq = COLLIDE
 
     def _place(self, ids: list[int], start: np.ndarray, radius: np.ndarray) -> None:
         """Makes room for the root, puts it in and lets the grains come to rest around it."""
@@ -281,7 +302,7 @@ class Soil:
             )
         for k, marker in enumerate(ids):
             self._insert(marker, start[k], radius[k])
-        self.newton.maxVelocitySq = 2.0
+        self._list_rows(ids)
         self.grain_count -= removed
         self.solid = solid_volume(self.recipe)
         O.dt = self.critical_step
@@ -320,18 +341,18 @@ class Soil:
             began = time.perf_counter()
         substeps = max(SUBSTEPS_AT_LEAST, ceil(duration_h / self.critical_step))
         O.dt = duration_h / substeps
-        states = [self.states[m] for m in ids]
-        position = np.array([[p[0], p[1], p[2]] for p in (s.pos for s in states)]).reshape(-1, 3)
-        velocity = (end - position) / duration_h
-        for state, v, w in zip(states, velocity.tolist(), spin.tolist()):
+        velocity = (end - self.row_position) / duration_h
+        for state, v in zip(self.row_states, velocity.tolist()):
             state.vel = v
-            state.angVel = w
+        turning = spin.tolist()
+        for k, _ in self.near:
+            if k < len(ids):
+                self.row_states[k].angVel = turning[k]
+        self.row_position = end  # within rounding
 
         first = O.iter
-        fixed = self.wall_ids[: 2 * self.recipe["dimension"]] + self.obstacle_ids
-        slots = [self.slots[m] for m in ids] + fixed
-        force, torque = np.zeros((len(slots), 3)), np.zeros((len(slots), 3))
         samples = sorted({substeps - 1 - k * substeps // FORCE_SAMPLES for k in range(FORCE_SAMPLES)})
+        force, torque = np.zeros((len(self.row_slots), 3)), np.zeros((len(self.row_slots), 3))
         dem_s, done = 0.0, 0
         for sample in samples:
             t = time.perf_counter()
@@ -339,9 +360,8 @@ class Soil:
                 O.step()
             done = sample + 1
             dem_s += time.perf_counter() - t
-            self._add_forces(slots, force, torque)
-        force /= len(samples)
-        torque /= len(samples)
+            self._add_forces(self.in_touch, 1.0 / len(samples), force, torque)
+        self._add_new_forces(force, torque)
         if O.iter - first != substeps:
             raise RuntimeError(f"YADE made {O.iter - first} steps instead of {substeps}")
 
@@ -353,7 +373,7 @@ class Soil:
         stiffness = answer["contact_stiffness_N_mm"]
         stiffness[:] = 0.0
         for k in np.flatnonzero(np.any(force[:n] != 0.0, axis=1)).tolist():
-            stiffness[k] = sum(c.phys.kn for c in O.bodies[slots[k]].intrs()) / layer
+            stiffness[k] = sum(c.phys.kn for c in O.bodies[self.row_slots[k]].intrs()) / layer
         if not (np.isfinite(answer["mean_N"]).all() and np.isfinite(stiffness).all()):
             raise RuntimeError("a force on the root is not finite")
 
@@ -365,16 +385,23 @@ class Soil:
         return self.numbers
 
     @staticmethod
-    def _add_forces(slots: list[int], force: np.ndarray, torque: np.ndarray) -> None:
-        """Adds the present force and torque of each body; most markers touch nothing."""
+    def _add_forces(rows: list[tuple[int, int]], share: float, force: np.ndarray, torque: np.ndarray) -> None:
+        """Adds a share of the present force and torque on each row's body."""
         f, t = O.forces.f, O.forces.t
-        for k, slot in enumerate(slots):
+        for k, slot in rows:
             a = f(slot)
-            x, y, z = a[0], a[1], a[2]
-            if x != 0.0 or y != 0.0 or z != 0.0:
-                force[k] += (x, y, z)
+            if a != NO_FORCE:
                 b = t(slot)
-                torque[k] += (b[0], b[1], b[2])
+                force[k] += (share * a[0], share * a[1], share * a[2])
+                torque[k] += (share * b[0], share * b[1], share * b[2])
+
+    def _add_new_forces(self, force: np.ndarray, torque: np.ndarray) -> None:
+        """At an interval's end: what has come into touch in it, and so had half its present force on the average."""
+        if self.collisions_seen != self.collider.numAction:
+            self._list_near()
+        known = {k for k, _ in self.in_touch}
+        self._add_forces([row for row in self.near if row[0] not in known], 0.5, force, torque)
+        self.in_touch = [row for row in self.near if force[row[0]].any()]
 
     def _count(self, interval: int, substeps: int, velocity: np.ndarray, fixed: np.ndarray) -> None:
         """What history.csv shows. In 2D forces and work are per mm of depth."""
