@@ -16,12 +16,6 @@ namespace {
 
 using physics::record;
 
-/// Force that arrests the root: p (1 - nu_A) times its width over the part that pushes.
-double arrest_N(const physics::SceneRun<2>& run) {
-  return initial_pressure_MPa(run.scene) * (1.0 - run.scene.tissue.nu_axial) * 2.0 *
-         physics::radius_mm<2>(run.tissue, 0.2, 0.6);
-}
-
 // ---- formulas -------------------------------------------------------------------------------------
 
 TEST(PredictedForce, FollowsTheStiffnessAlongTheForceAndNeverPulls) {

@@ -68,13 +68,20 @@ inline twins::HalfSpaceParameters plate(const Scene& scene, double stiffness_N_m
   return p;
 }
 
+/// Force that arrests the root: p (1 - nu_A) times its width over the part that pushes.
+inline double arrest_N(const physics::SceneRun<2>& run) {
+  return initial_pressure_MPa(run.scene) * (1.0 - run.scene.tissue.nu_axial) * 2.0 *
+         physics::radius_mm<2>(run.tissue, 0.2, 0.6);
+}
+
 /// A scene in progress with a soil in this process.
 template <int Dim>
 class SoilRun : public physics::SceneRun<Dim> {
  public:
   template <class Make>
-  SoilRun(const std::vector<std::string>& overrides, SoilContactParameters parameters, Make&& make)
-      : physics::SceneRun<Dim>(scene_text, overrides),
+  SoilRun(const std::vector<std::string>& overrides, SoilContactParameters parameters, Make&& make,
+          const std::string& text = scene_text)
+      : physics::SceneRun<Dim>(text, overrides),
         contact(add_soil_contact<Dim>(this->scene, *this->built.model, std::move(parameters), make(this->scene))) {}
 
   /// Axial force of whatever touches the root, compression positive.
