@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import hashlib
-import json
 import subprocess
 import sys
 import tomllib
@@ -24,10 +22,10 @@ from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 
 from rootsoil_tools import draw, measure
-from rootsoil_tools.runs import Run, RunError, read_summary
+from rootsoil_tools.runs import Run, RunError
+from rootsoil_tools.series import PROGRAM, PROJECT, Series
 from rootsoil_tools.theory import Model, model_of
 
-PROJECT = Path(__file__).resolve().parent.parent
 PRESSURES_MPA = (1.0, 0.825, 0.75, 0.625, 0.5, 0.4)
 QUICK_FRACTION = 0.4  # of the scene's duration
 
@@ -44,43 +42,6 @@ class Member:
     growth_zone: float  # mm
     mature_radius: float  # mm
     radius_drift: float  # 1/h
-
-
-def request_of(program: Path, scene: Path, p: float, arguments: list[str]) -> dict:
-    """What makes two runs the same: the scene file, the pressure, further arguments, the program's version."""
-    version = subprocess.run([program, "version"], capture_output=True, text=True, check=True).stdout.strip()
-    digest = hashlib.sha256(scene.read_bytes()).hexdigest()
-    return {"scene_sha256": digest, "p_MPa": p, "arguments": arguments, "version": version}
-
-
-def ensure_run(
-    program: Path, scene: Path, p: float, out: Path, until_h: float, arguments: list[str], threads: list[str]
-) -> Path:
-    """The folder of a run of the scene at p (MPa) that reached until_h (h); runs it, or what is missing of it.
-
-    `arguments` change the result, `threads` do not.
-    """
-    folder = out / f"p_{p:g}"
-    record = out / f"p_{p:g}.json"
-    request = request_of(program, scene, p, arguments)
-    command = [str(program), "run", str(scene), "--out", str(folder), "--set", f"pressure.differential_MPa={p:g}"]
-    command += ["--until", f"{until_h:g}", *arguments, *threads]
-    if folder.exists():
-        if not record.is_file() or json.loads(record.read_text(encoding="utf-8")) != request:
-            raise RunError(
-                f"{folder} holds a run of another scene, other arguments or another version of the program; "
-                "remove it or choose another --out"
-            )
-        if read_summary(folder).get("time_h", 0.0) >= until_h * (1.0 - 1e-9):
-            print(f"p = {p:g} MPa: {folder} is finished", flush=True)
-            return folder
-        if (folder / "checkpoint.h5").exists():
-            command.append("--resume")
-    record.parent.mkdir(parents=True, exist_ok=True)
-    record.write_text(json.dumps(request, indent=2) + "\n", encoding="utf-8")
-    print(f"p = {p:g} MPa: running into {folder}", flush=True)
-    subprocess.run(command, check=True, stdin=subprocess.DEVNULL)
-    return folder
 
 
 def measure_member(p: float, run: Run) -> Member:
@@ -206,20 +167,18 @@ def main() -> int:
     parser.add_argument(
         "--program",
         type=Path,
-        default=PROJECT / "build" / "release" / "rootsoil",
+        default=PROGRAM,
         help="default: build/release/rootsoil",
     )
     options = parser.parse_args()
     arguments = ["--accuracy", options.accuracy] if options.accuracy else []
     try:
-        if not options.program.is_file():
-            raise RunError(f"{options.program} is not there; build it with tools/build.sh")
         duration = float(tomllib.loads(options.scene.read_text(encoding="utf-8"))["scene"]["duration_h"])
         until = duration * (QUICK_FRACTION if options.quick else 1.0)
-        threads = ["--threads", str(options.threads)] if options.threads else []
+        series = Series(options.scene, options.out, options.program, arguments, options.threads)
         members = []
         for p in options.pressures:
-            folder = ensure_run(options.program, options.scene, p, options.out, until, arguments, threads)
+            folder = series.run(f"p_{p:g}", [f"pressure.differential_MPa={p:g}"], until)
             members.append(measure_member(p, Run(folder)))
         draw_series(members, options.out / "impedance.png")
         write_csv(members, options.out / "impedance.csv")

@@ -73,6 +73,16 @@ def unarchive(data: bytes) -> None:
         os.close(fd)
 
 
+def read_forces(slots: list[int]) -> np.ndarray:
+    """Present force and torque on each body, (bodies, 6)."""
+    f, t = O.forces.f, O.forces.t
+    rows = []
+    for slot in slots:
+        a, b = f(slot), t(slot)
+        rows.append((a[0], a[1], a[2], b[0], b[1], b[2]))
+    return np.array(rows).reshape(-1, 6)
+
+
 def make_sample(recipe: dict[str, Any], path: Path, progress: Callable[[str], None]) -> dict[str, Any]:
     """Packs a sample and writes its file. Returns its description."""
     meta = packing.pack_sample(recipe, progress)
@@ -352,7 +362,8 @@ class Soil:
 
         first = O.iter
         samples = sorted({substeps - 1 - k * substeps // FORCE_SAMPLES for k in range(FORCE_SAMPLES)})
-        force, torque = np.zeros((len(self.row_slots), 3)), np.zeros((len(self.row_slots), 3))
+        touching = [slot for _, slot in self.in_touch]
+        readings = np.zeros((len(touching), 6))
         dem_s, done = 0.0, 0
         for sample in samples:
             t = time.perf_counter()
@@ -360,8 +371,11 @@ class Soil:
                 O.step()
             done = sample + 1
             dem_s += time.perf_counter() - t
-            self._add_forces(self.in_touch, 1.0 / len(samples), force, torque)
-        self._add_new_forces(force, torque)
+            readings += read_forces(touching)
+        loads = np.zeros((len(self.row_slots), 6))
+        loads[[k for k, _ in self.in_touch]] = readings / len(samples)
+        self._add_new_contacts(loads)
+        force, torque = loads[:, :3], loads[:, 3:]
         if O.iter - first != substeps:
             raise RuntimeError(f"YADE made {O.iter - first} steps instead of {substeps}")
 
@@ -384,24 +398,16 @@ class Soil:
         numbers["soil_exchange_s"] = numbers.get("soil_exchange_s", 0.0) + time.perf_counter() - began - dem_s
         return self.numbers
 
-    @staticmethod
-    def _add_forces(rows: list[tuple[int, int]], share: float, force: np.ndarray, torque: np.ndarray) -> None:
-        """Adds a share of the present force and torque on each row's body."""
-        f, t = O.forces.f, O.forces.t
-        for k, slot in rows:
-            a = f(slot)
-            if a != NO_FORCE:
-                b = t(slot)
-                force[k] += (share * a[0], share * a[1], share * a[2])
-                torque[k] += (share * b[0], share * b[1], share * b[2])
-
-    def _add_new_forces(self, force: np.ndarray, torque: np.ndarray) -> None:
+    def _add_new_contacts(self, loads: np.ndarray) -> None:
         """At an interval's end: what has come into touch in it, and so had half its present force on the average."""
         if self.collisions_seen != self.collider.numAction:
             self._list_near()
-        known = {k for k, _ in self.in_touch}
-        self._add_forces([row for row in self.near if row[0] not in known], 0.5, force, torque)
-        self.in_touch = [row for row in self.near if force[row[0]].any()]
+        known, force = {k for k, _ in self.in_touch}, O.forces.f
+        new = [(k, slot) for k, slot in self.near if k not in known and force(slot) != NO_FORCE]
+        if new:
+            loads[[k for k, _ in new]] = 0.5 * read_forces([slot for _, slot in new])
+        loaded = set(np.flatnonzero(loads[:, :3].any(axis=1)).tolist())
+        self.in_touch = [row for row in self.near if row[0] in loaded]
 
     def _count(self, interval: int, substeps: int, velocity: np.ndarray, fixed: np.ndarray) -> None:
         """What history.csv shows. In 2D forces and work are per mm of depth."""
