@@ -6,8 +6,8 @@ pressure     One root through soils of several confining pressures, several samp
              same samples and the same root without soil under the pressure that gives it the same force-limited speed.
              Writes pressure.csv, pressure.png and a table: tip speed against force and resistance, with the paper's
              bridge p = turgor - Q/4.
-flexibility  Roots of several axial moduli through the same soil, softening in proportion so that all grow alike, beside a
-             penetrometer: the rigid root. Writes flexibility.csv, flexibility.png and a table.
+flexibility  Roots of several axial moduli across a gap into the same soil, softening in proportion so that all grow alike,
+             beside a penetrometer over the depths that the stiffest one reaches: the rigid root. Writes flexibility.csv, flexibility.png and a table.
 
 Runs go to OUT; finished ones are taken as they are, interrupted ones go on.
 """
@@ -34,11 +34,12 @@ from rootsoil_tools.series import PROGRAM, PROJECT, Series
 from rootsoil_tools.theory import model_of
 
 PRESSURES_MPA = (0.01, 0.02, 0.035, 0.05)
-MODULI_MPA = (2000.0, 1000.0, 500.0, 250.0, 125.0)
+MODULI_MPA = (1600.0, 400.0, 200.0, 100.0, 50.0)
 SEEDS = 3
 SETTLED_FROM = 0.25  # of the run: before, forces rise
-PROBE = {"depth_mm": 2.6, "average_from_mm": 1.2}
-QUICK = {"pressures": (0.01, 0.05), "moduli": (1000.0, 250.0), "seeds": 1, "fraction": 0.25}
+DEPTHS_MM = (1.2, 2.6)  # over which the penetrometer's resistance is averaged
+SCENES = {"pressure": "soil_tutorial", "flexibility": "soil_buckling"}
+QUICK = {"pressures": (0.01, 0.05), "moduli": (1600.0, 100.0), "seeds": 1, "fraction": 0.25}
 
 
 @dataclass(frozen=True)
@@ -115,9 +116,10 @@ def without_soil(text: str) -> str:
     return "".join(s for s in sections if not re.match(r"\[+(soil\b|penetrometer\b)", s))
 
 
-def probe_settings(diameter_mm: float, rate_mm_h: float, seeds: int) -> list[str]:
-    """Keys of a penetrometer as wide and as fast as the root."""
-    keys = {"diameter_mm": diameter_mm, "rate_mm_h": rate_mm_h, "seeds": seeds, **PROBE}
+def probe_settings(scene: dict, rate_mm_h: float, seeds: int, depths_mm: tuple[float, float]) -> list[str]:
+    """Keys of a penetrometer as wide as the root, averaged between two depths."""
+    keys = {"diameter_mm": 2.0 * float(scene["root"]["radius_mm"]), "rate_mm_h": rate_mm_h, "seeds": seeds}
+    keys |= {"average_from_mm": depths_mm[0], "depth_mm": depths_mm[1]}
     return [f"penetrometer.{key}={value:g}" for key, value in keys.items()]
 
 
@@ -160,7 +162,7 @@ def draw_pressure(passages: Sequence[Passage], Q_MPa: dict[float, float], path: 
     figure = draw.new_figure(180.0, 66.0)
     places = [14.0, 74.0, 134.0]
     panels = [draw.place(figure, x, 12.0, 42.0, 44.0) for x in places]
-    turgor, arrest = passages[0].pressure_MPa, passages[0].arresting_force
+    turgor = passages[0].pressure_MPa
     axes = (
         ([p.confining_MPa for p in passages], "confining pressure (MPa)"),
         ([p.relative_force for p in passages], "tip force / arresting force"),
@@ -181,7 +183,6 @@ def draw_pressure(passages: Sequence[Passage], Q_MPa: dict[float, float], path: 
     line(panels[2], 0.25, "$p$ = turgor - $Q$/4 (paper)", linestyle=":", **theory)
     for panel in panels[1:]:
         panel.legend(frameon=False, loc="lower left")
-    panels[0].set_title(f"arrested at {arrest:.2f} N/mm" if arrest else "", fontsize=7.0)
     figure.savefig(path, dpi=draw.DOTS_PER_INCH)
 
 
@@ -194,6 +195,7 @@ def line(axes: Axes, factor: float, label: str, **style: object) -> None:
 def pressure_series(options: argparse.Namespace, until_h: float) -> str:
     """Runs, measures, draws; returns the table."""
     series = Series(options.scene, options.out, options.program, threads=options.threads)
+    scene = tomllib.loads(options.scene.read_text(encoding="utf-8"))
     uniform = options.out / "uniform.toml"
     options.out.mkdir(parents=True, exist_ok=True)
     uniform.write_text(without_soil(options.scene.read_text(encoding="utf-8")), encoding="utf-8")
@@ -212,9 +214,8 @@ def pressure_series(options: argparse.Namespace, until_h: float) -> str:
             measure_passage(Run(series.run(f"P_{confining:g}_seed_{seed}", [*soil, f"soil.seed={seed}"], until_h)))
             for seed in range(1, options.seeds + 1)
         ]
-        diameter = 2.0 * float(tomllib.loads(options.scene.read_text())["root"]["radius_mm"])
         probe = series.penetrometer(
-            f"P_{confining:g}_probe", soil + probe_settings(diameter, here[0].free_speed, options.seeds)
+            f"P_{confining:g}_probe", soil + probe_settings(scene, here[0].free_speed, options.seeds, DEPTHS_MM)
         )
         Q_MPa[confining] = float(probe["Q_MPa"])
         turgor = here[0].pressure_MPa
@@ -265,13 +266,17 @@ def flexibility_series(options: argparse.Namespace, until_h: float) -> str:
     """Runs, measures, draws; returns the table."""
     series = Series(options.scene, options.out, options.program, threads=options.threads)
     scene = tomllib.loads(options.scene.read_text(encoding="utf-8"))
-    passages = [
-        measure_passage(Run(series.run(f"E_{E:g}_seed_{seed}", [*scaled_root(scene, E), f"soil.seed={seed}"], until_h)))
+    runs = [
+        Run(series.run(f"E_{E:g}_seed_{seed}", [*scaled_root(scene, E), f"soil.seed={seed}"], until_h))
         for E in options.moduli
         for seed in range(1, options.seeds + 1)
     ]
+    passages = [measure_passage(run) for run in runs]
+    stiffest = runs[int(np.argmax([p.E_axial_MPa for p in passages]))].history()
+    reached = stiffest["tip_x_mm"] - float(scene["soil"]["box_from_mm"][0])
+    depths = (max(0.0, float(np.interp(SETTLED_FROM * until_h, stiffest["time_h"], reached))), float(reached[-1]))
     width = 2.0 * float(scene["root"]["radius_mm"])
-    probe = series.penetrometer("probe", probe_settings(width, passages[0].free_speed, options.seeds))
+    probe = series.penetrometer("probe", probe_settings(scene, passages[0].free_speed, options.seeds, depths))
     rigid = float(probe["Q_MPa"]) * (width if int(scene["scene"].get("dimension", 2)) == 2 else np.pi * width**2 / 4.0)
     write_csv(passages, [{"rigid_force": rigid}] * len(passages), options.out / "flexibility.csv")
     draw_flexibility(passages, rigid, options.out / "flexibility.png")
@@ -307,7 +312,7 @@ def main() -> int:
     """0, or 1 with a message where a run failed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("study", choices=("pressure", "flexibility"))
-    parser.add_argument("--scene", type=Path, default=PROJECT / "scenarios" / "soil_tutorial.toml", help="default: %(default)s")
+    parser.add_argument("--scene", type=Path, help=f"default: one of scenarios/, {SCENES}")
     parser.add_argument("--out", type=Path, help="folder (default: runs/soil_STUDY)")
     parser.add_argument("--pressures", type=float, nargs="+", metavar="MPa", help=f"default: {PRESSURES_MPA}")
     parser.add_argument("--moduli", type=float, nargs="+", metavar="MPa", help=f"default: {MODULI_MPA}")
@@ -317,6 +322,7 @@ def main() -> int:
     parser.add_argument("--program", type=Path, default=PROGRAM, help="default: build/release/rootsoil")
     options = parser.parse_args()
     quick = options.quick
+    options.scene = options.scene or PROJECT / "scenarios" / f"{SCENES[options.study]}.toml"
     options.out = options.out or Path("runs") / f"soil_{options.study}"
     options.pressures = options.pressures or (QUICK["pressures"] if quick else PRESSURES_MPA)
     options.moduli = options.moduli or (QUICK["moduli"] if quick else MODULI_MPA)

@@ -59,7 +59,7 @@ ParticleStore<Dim>::ParticleStore()
       // parent_id is set by divide(), which alone knows the mother's id
       parent_id(declare<std::int64_t>({"parent_id", "1", "cell_id of the mother, -1 at the start"},
                                       on_division::copy<Dim, std::int64_t>)),
-      clamped(declare<std::int64_t>({"clamped", "1", "1 where the base is held"},
+      clamped(declare<std::int64_t>({"clamped", "1", "1 where the base is held, 2 asleep"},
                                     on_division::copy<Dim, std::int64_t>)) {}
 
 template <int Dim>
@@ -80,7 +80,13 @@ std::size_t ParticleStore<Dim>::bytes_per_cell() const {
 template <int Dim>
 void ParticleStore<Dim>::resize(std::size_t cells) {
   for (auto& field : fields_) field->resize(cells);
-  size_ = cells;
+  size_ = total_ = cells;
+}
+
+template <int Dim>
+void ParticleStore<Dim>::rest(std::size_t cells) {
+  ROOTSOIL_ASSERT(cells <= size_);
+  size_ -= cells;
 }
 
 template <int Dim>
@@ -97,8 +103,9 @@ void ParticleStore<Dim>::divide(std::size_t mother, const Vec<Dim>& axis, double
   const Division<Dim> division{axis,     length_mm, offset_mm, offset_mm * axis.dot(frame[mother].col(0)),
                                first_id, second_id};
   const std::int64_t mother_id = cell_id[mother];
-  for (auto& field : fields_) field->divide(mother, division);
+  for (auto& field : fields_) field->divide(mother, size_, division);
   ++size_;
+  ++total_;
   parent_id[mother] = mother_id;
   parent_id[size_ - 1] = mother_id;
 }

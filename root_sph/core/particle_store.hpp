@@ -5,11 +5,15 @@
 // column is a Field; whoever needs one declares it with a rule for division,
 // and there is no way to declare one without: cell division cannot forget a
 // field. An effect that is absent from the scene declares nothing.
+//
+// Cells at rest lie at the end of every column, beyond size(): whoever loops over the cells passes them by
+// (effects/sleep.hpp).
 #pragma once
 
 #include "root_sph/core/errors.hpp"
 #include "root_sph/core/types.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -52,6 +56,11 @@ void halve(T& first, T& second, const Division<Dim>&) {
 template <int Dim, class T>
 void recomputed(T&, T&, const Division<Dim>&) {}
 }  // namespace on_division
+
+/// Values of the column `clamped`.
+namespace hold {
+inline constexpr std::int64_t none = 0, at_base = 1, asleep = 2;
+}
 
 /// state: evolves, is part of a checkpoint. scratch: recomputed in every window from state.
 enum class Storage { state, scratch };
@@ -104,7 +113,7 @@ class FieldBase {
   friend class ParticleStore;
   virtual void resize(std::size_t cells) = 0;
   virtual void permute(const std::vector<std::int64_t>& new_to_old) = 0;
-  virtual void divide(std::size_t mother, const Division<Dim>& division) = 0;
+  virtual void divide(std::size_t mother, std::size_t second_at, const Division<Dim>& division) = 0;
 
   FieldInfo info_;
 };
@@ -153,14 +162,19 @@ class Field final : public FieldBase<Dim> {
     std::vector<T> sorted;
     sorted.reserve(values_.size());
     for (const std::int64_t old : new_to_old) sorted.push_back(values_[static_cast<std::size_t>(old)]);
-    values_.swap(sorted);
+    if (sorted.size() == values_.size()) {
+      values_.swap(sorted);
+    } else {
+      std::copy(sorted.begin(), sorted.end(), values_.begin());  // what rests stays where it is
+    }
   }
-  void divide(std::size_t mother, const Division<Dim>& division) override {
+  void divide(std::size_t mother, std::size_t second_at, const Division<Dim>& division) override {
     T first = values_[mother];
     T second = first;
     rule_(first, second, division);
     values_[mother] = first;
     values_.push_back(second);
+    std::swap(values_[second_at], values_.back());
   }
 
   DivisionRule<Dim, T> rule_;
@@ -172,7 +186,8 @@ class ParticleStore {
  public:
   ParticleStore();
 
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return size_; }    ///< cells that take part
+  std::size_t total() const { return total_; }  ///< and those at rest
 
   /// Adds a column (all zero). The name must be new. The reference stays valid for the store's life.
   template <class T>
@@ -180,7 +195,7 @@ class ParticleStore {
     ROOTSOIL_ASSERT(find(info.name) == nullptr);
     auto field = std::make_unique<Field<Dim, T>>(std::move(info), rule);
     Field<Dim, T>& reference = *field;
-    static_cast<FieldBase<Dim>&>(reference).resize(size_);
+    static_cast<FieldBase<Dim>&>(reference).resize(total_);
     fields_.push_back(std::move(field));
     return reference;
   }
@@ -191,15 +206,24 @@ class ParticleStore {
   std::size_t bytes_per_cell() const;
 
   void resize(std::size_t cells);
-  /// new_to_old[k] = index, before the call, of the cell that becomes cell k.
+  /// The values of the cells that take part.
+  template <class T>
+  std::span<const T> active(const Field<Dim, T>& field) const {
+    return {field.values().data(), size_};
+  }
+  /// The last so many of the cells that take part go to rest.
+  void rest(std::size_t cells);
+  /// All take part again.
+  void wake() { size_ = total_; }
+  /// Of the cells that take part: new_to_old[k] = index, before the call, of the cell that becomes cell k.
   void permute(const std::vector<std::int64_t>& new_to_old);
-  /// Divides a cell: the daughter at +offset stays at this index, the other is appended.
+  /// Divides a cell: the daughter at +offset stays at this index, the other becomes the last that takes part.
   /// Every field follows its own rule. Paper 4.2.
   void divide(std::size_t mother, const Vec<Dim>& axis, double length_mm, std::int64_t first_id, std::int64_t second_id);
 
  private:
   std::vector<std::unique_ptr<FieldBase<Dim>>> fields_;
-  std::size_t size_ = 0;
+  std::size_t size_ = 0, total_ = 0;
 
  public:
   // What every scene has. Stress and frame: stress lives in the material frame, whose axes are the
@@ -215,7 +239,7 @@ class ParticleStore {
   Field<Dim, std::int64_t>& generation;
   Field<Dim, std::int64_t>& cell_id;
   Field<Dim, std::int64_t>& parent_id;         ///< -1: there from the start
-  Field<Dim, std::int64_t>& clamped;           ///< 1: held at the base
+  Field<Dim, std::int64_t>& clamped;           ///< 0: free; otherwise held (hold)
 };
 
 extern template class ParticleStore<2>;

@@ -40,6 +40,7 @@ struct Hooks {
   Passes<std::vector<Vec<Dim>>&> stiffness;  ///< add to the stability bound, N/mm along the material axes
   Passes<> step_start;
   Passes<SlipAdvance> forces;  ///< add to the forces of cells
+  Passes<std::vector<char>&> busy;  ///< mark cells that must not fall asleep, now and then at a window's end
   Passes<> window_end;         ///< pairs and deformation of the window are still there; what remains is state
 
   template <class... Arguments>

@@ -57,7 +57,7 @@ void RootAxis<Dim>::anchor(Tissue<Dim>& tissue) {
   width = std::max(width, 2.0 * longest);
 
   double furthest = 0.0;
-  for (const double s : cells.distance_to_tip.values()) furthest = std::max(furthest, s);
+  for (const double s : cells.active(cells.distance_to_tip)) furthest = std::max(furthest, s);
   // the last, partial slice joins the one before it
   const std::size_t slices = std::max<std::size_t>(1, static_cast<std::size_t>(furthest / width));
   std::vector<Vec<Dim>> knot(slices, Vec<Dim>::Zero());
@@ -118,6 +118,7 @@ void RootAxis<Dim>::anchor(Tissue<Dim>& tissue) {
       length_mm_ = std::max(length_mm_, end);
     }
   }
+  length_mm_ += resting_mm_;
   tip_mm_ = line[0] - first * tipwards;
 }
 
@@ -169,7 +170,7 @@ double RootAxis<Dim>::steady_acceleration(double s_mm) const {
 
 template <int Dim>
 std::vector<double> RootAxis<Dim>::save() const {
-  std::vector<double> saved{bin_mm_, length_mm_};
+  std::vector<double> saved{bin_mm_, length_mm_, resting_mm_};
   saved.insert(saved.end(), tip_mm_.data(), tip_mm_.data() + Dim);
   saved.insert(saved.end(), flow_mm_h_.begin(), flow_mm_h_.end());
   return saved;
@@ -177,11 +178,12 @@ std::vector<double> RootAxis<Dim>::save() const {
 
 template <int Dim>
 void RootAxis<Dim>::restore(const std::vector<double>& saved) {
-  ROOTSOIL_ASSERT(saved.size() >= 2 + Dim);
+  ROOTSOIL_ASSERT(saved.size() >= 3 + Dim);
   bin_mm_ = saved[0];
   length_mm_ = saved[1];
-  tip_mm_ = Eigen::Map<const Vec<Dim>>(saved.data() + 2);
-  flow_mm_h_.assign(saved.begin() + 2 + Dim, saved.end());
+  resting_mm_ = saved[2];
+  tip_mm_ = Eigen::Map<const Vec<Dim>>(saved.data() + 3);
+  flow_mm_h_.assign(saved.begin() + 3 + Dim, saved.end());
 }
 
 template <int Dim>
@@ -203,7 +205,7 @@ double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, doubl
     volume[b] += cells.volume[i];
     total += cells.volume[i];
   }
-  const double section = total / axis.length_mm();
+  const double section = total / axis.awake_length_mm();
   double sum = 0.0, worst = 0.0;
   for (std::size_t b = 0; b < bins; ++b) {
     sum += force[b];

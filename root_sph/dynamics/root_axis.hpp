@@ -27,6 +27,9 @@ class RootAxis {
 
   double bin_mm() const { return bin_mm_; }
   double length_mm() const { return length_mm_; }        ///< tip to base along the root
+  double awake_length_mm() const { return length_mm_ - resting_mm_; }  ///< tip to where the cells that move end
+  /// Length of the part next to the base whose cells do not move and are not asked for their place.
+  void set_resting_length(double length_mm) { resting_mm_ = length_mm; }
   const Vec<Dim>& tip_mm() const { return tip_mm_; }     ///< the point s = 0
   const std::vector<double>& flow() const { return flow_mm_h_; }
   double flow_mm_h(double s_mm) const;                    ///< v(s)
@@ -34,13 +37,14 @@ class RootAxis {
   /// Axial acceleration of the tissue in steady growth above a held base, mm/h^2: e(L) v(L) - e(s) v(s).
   double steady_acceleration(double s_mm) const;
 
-  /// State for a checkpoint: bin, length, tip, flow.
+  /// State for a checkpoint: bin, length, resting length, tip, flow.
   std::vector<double> save() const;
   void restore(const std::vector<double>& saved);
 
  private:
   double bin_mm_ = 0.0;
   double length_mm_ = 0.0;
+  double resting_mm_ = 0.0;
   Vec<Dim> tip_mm_ = Vec<Dim>::Zero();
   std::vector<double> flow_mm_h_;
 };

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rootsoil {
@@ -41,14 +42,14 @@ void Solver<Dim>::begin_window() {
   PairList old_pairs;
   clock_.measure("neighbours", [&] {
     fill_metrics();
-    cells.permute(spatial_order<Dim>(cells.position.values(), metrics));
+    cells.permute(spatial_order<Dim>(cells.active(cells.position), metrics));
     fill_metrics();
     old_pairs = std::move(tissue_.pairs);
-    tissue_.pairs = find_pairs<Dim>(cells.position.values(), metrics);
+    tissue_.pairs = find_pairs<Dim>(cells.active(cells.position), metrics);
   });
   Hooks<Dim>::run(hooks_.parameters, clock_, tissue_);
   clock_.measure("gradient operators", [&] {
-    gradient_report_ = build_gradients<Dim>(cells.position.values(), metrics, cells.volume.values(), tissue_.pairs,
+    gradient_report_ = build_gradients<Dim>(cells.active(cells.position), metrics, cells.active(cells.volume), tissue_.pairs,
                                             options_.gradient, tissue_.gradients, tissue_.kernel);
   });
   Hooks<Dim>::run(hooks_.operators, clock_, tissue_);
@@ -134,7 +135,7 @@ void Solver<Dim>::predictor_corrector_step() {
   });
   measure_gradients();
   clock_.measure("material", [&] { update_material_(tissue_, dt); });
-  cells.velocity.values().swap(kept);
+  std::swap_ranges(kept.begin(), kept.end(), cells.velocity.values().begin());
 }
 
 template <int Dim>
@@ -191,7 +192,8 @@ template <int Dim>
 void Solver<Dim>::save(std::map<std::string, std::vector<double>>& reals,
                        std::map<std::string, std::vector<std::int64_t>>& integers) const {
   reals["solver/axis"] = axis_.save();
-  integers["solver/counters"] = {steps_, tissue_.next_cell_id};
+  integers["solver/counters"] = {steps_, tissue_.next_cell_id,
+                                 static_cast<std::int64_t>(tissue_.cells.total() - tissue_.cells.size())};
   if (!terms_.non_affine) return;
   std::vector<std::int64_t>& index = integers["solver/slip_pairs"];
   std::vector<double>& slip = reals["solver/slip_mm"];
@@ -214,6 +216,7 @@ void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& real
   steps_ = integers.at("solver/counters").at(0);
   tissue_.next_cell_id = integers.at("solver/counters").at(1);
   tissue_.time_h = step_time_h(steps_, tissue_.step_h);
+  tissue_.cells.rest(static_cast<std::size_t>(integers.at("solver/counters").at(2)));
   const std::size_t n = tissue_.cells.size();
   for (std::size_t i = 0; i < n; ++i) tissue_.window_index[i] = static_cast<std::int64_t>(i);
   if (!terms_.non_affine) return;

@@ -42,7 +42,7 @@ template <int Dim>
 Energies energies(const Tissue<Dim>& tissue) {
   Energies e;
   const auto& cells = tissue.cells;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  for (std::size_t i = 0; i < cells.total(); ++i) {
     const Vec<Dim> u = cells.frame[i].transpose() * cells.velocity[i];
     for (int a = 0; a < Dim; ++a) {
       if (tissue.inverse_inertia[i][a] > 0.0) e.kinetic += 0.5 * u[a] * u[a] / tissue.inverse_inertia[i][a];

@@ -59,6 +59,7 @@ struct Tissue {
   std::vector<PairGradient<Dim>> gradients;
   std::vector<double> kernel;  ///< W of each pair, 1/mm^Dim
 
+  Field<Dim, std::int64_t>* neighbours_at_rest = nullptr;  ///< of cells at rest; null: none ever rest
   Field<Dim, Vec<Dim>>* body_acceleration = nullptr;  ///< mm/h^2, constant over a window; null: none
 
   double time_h = 0.0;

@@ -18,11 +18,11 @@ GrowthEffect<Dim>::GrowthEffect(Solver<Dim>& solver, std::function<SofteningProf
         const RootAxis<Dim>& axis = solver.axis();
         const auto& cells = t.cells;
         // held cells do not flow: the integral ends where they begin
-        const SofteningIntegral integral(profile_at(t.pressure_MPa), axis.length_mm(), 0.25 * axis.bin_mm());
+        const SofteningIntegral integral(profile_at(t.pressure_MPa), axis.awake_length_mm(), 0.25 * axis.bin_mm());
         std::vector<double> flow(cells.size());
 #pragma omp parallel for schedule(static)
         for (std::size_t i = 0; i < cells.size(); ++i) {
-          flow[i] = cells.clamped[i] ? integral(axis.length_mm())
+          flow[i] = cells.clamped[i] ? integral(axis.awake_length_mm())
                                      : integral(solver.mid_window_distance(cells.distance_to_tip[i]));
           softening_[i] = 0.0;
         }

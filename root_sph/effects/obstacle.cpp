@@ -49,6 +49,9 @@ ObstacleEffect<Dim>::ObstacleEffect(Solver<Dim>& solver, ObstacleParameters<Dim>
   const std::string name = "obstacle " + parameters_.name;
   solver.hooks().stiffness.emplace_back(
       name, [this](Tissue<Dim>& t, std::vector<Vec<Dim>>& stiffness) { find_near_cells(t, stiffness); });
+  solver.hooks().busy.emplace_back(name, [this](Tissue<Dim>&, std::vector<char>& busy) {
+    for (const std::size_t i : near_) busy[i] = 1;
+  });
   solver.hooks().forces.emplace_back(name, [this](Tissue<Dim>& t, SlipAdvance advance) { add_forces(t, advance); });
 }
 

@@ -28,7 +28,7 @@ template <int Dim>
 ProbeReading ProbeEffect<Dim>::read(const Tissue<Dim>& tissue) {
   const auto& cells = tissue.cells;
   ProbeReading sum{};
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  for (std::size_t i = 0; i < cells.total(); ++i) {
     const double s = cells.distance_to_tip[i];
     const bool inside = followed_ ? (*followed_)[i] != 0
                                   : s >= (*parameters_.distance_to_tip_mm)[0] && s < (*parameters_.distance_to_tip_mm)[1];

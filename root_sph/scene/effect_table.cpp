@@ -8,6 +8,7 @@
 #include "root_sph/effects/obstacle.hpp"
 #include "root_sph/effects/pressure.hpp"
 #include "root_sph/effects/probe.hpp"
+#include "root_sph/effects/sleep.hpp"
 #include "root_sph/profiles/soil_response.hpp"
 
 #include <cmath>
@@ -95,6 +96,11 @@ void add_probes(const Scene& scene, Model<Dim>& model) {
   }
 }
 
+template <int Dim>
+void add_sleep(const Scene& scene, Model<Dim>& model) {
+  add<Dim, SleepEffect<Dim>>(model, SleepParameters{scene.sleep->strain_rate_per_h, scene.sleep->stress_change});
+}
+
 /// Parts of other effects, or conditions on the cells: nothing of their own to construct.
 template <int Dim>
 void add_nothing(const Scene&, Model<Dim>&) {}
@@ -128,6 +134,8 @@ constexpr EffectEntry table[] = {
      [](const Scene& s) { return !s.obstacles.empty(); }, add_obstacles<2>, add_obstacles<3>},
     {"soil contact", "[soil]", "surface markers exchange motion and forces with grains in YADE, another process", "",
      [](const Scene& s) { return s.soil.has_value(); }, add_nothing<2>, add_nothing<3>},  // the program hands the soil in
+    {"sleep", "[sleep]", "mature tissue that does not move is left out until something moves it", "",
+     [](const Scene& s) { return s.sleep.has_value(); }, add_sleep<2>, add_sleep<3>},
     {"probe", "[[probe]]", "a point or a bin of the tissue followed over time", "",
      [](const Scene& s) { return !s.probes.empty(); }, add_probes<2>, add_probes<3>},
 };

@@ -20,7 +20,7 @@ class ColumnMaker {
 
   template <class PerCell>
   void scalar(const char* name, const char* unit, const char* meaning, PerCell&& per_cell) {
-    std::vector<double> values(tissue_.cells.size());
+    std::vector<double> values(tissue_.cells.total());
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = per_cell(i);
     columns_.push_back({name, unit, meaning, 1, std::move(values)});
   }
@@ -29,8 +29,8 @@ class ColumnMaker {
   }
   template <class PerCell>
   void vector(const char* name, const char* unit, const char* meaning, PerCell&& per_cell) {
-    std::vector<double> values(3 * tissue_.cells.size(), 0.0);
-    for (std::size_t i = 0; i < tissue_.cells.size(); ++i) {
+    std::vector<double> values(3 * tissue_.cells.total(), 0.0);
+    for (std::size_t i = 0; i < tissue_.cells.total(); ++i) {
       const Vec<Dim> v = per_cell(i);
       std::copy(v.data(), v.data() + Dim, values.begin() + static_cast<std::ptrdiff_t>(3 * i));
     }
@@ -39,8 +39,8 @@ class ColumnMaker {
   /// xx yy zz xy yz xz
   template <class PerCell>
   void tensor(const char* name, const char* unit, const char* meaning, PerCell&& per_cell) {
-    std::vector<double> values(6 * tissue_.cells.size(), 0.0);
-    for (std::size_t i = 0; i < tissue_.cells.size(); ++i) {
+    std::vector<double> values(6 * tissue_.cells.total(), 0.0);
+    for (std::size_t i = 0; i < tissue_.cells.total(); ++i) {
       const Mat<Dim> m = per_cell(i);
       double* out = values.data() + 6 * i;
       for (int a = 0; a < Dim; ++a) out[a] = m(a, a);
@@ -106,13 +106,11 @@ Frame make_frame(const Model<Dim>& model, const std::vector<std::string>& wanted
   make.integers("generation", "divisions since the start", cells.generation.values());
   make.integers("cell_id", "unique number of the cell", cells.cell_id.values());
   make.integers("parent_id", "cell_id of the mother, -1 at the start", cells.parent_id.values());
-  make.integers("clamped", "1 where the base is held", cells.clamped.values());
-  if (!tissue.pairs.neighbours.empty()) {
-    make.integers("neighbours", "cells that this cell interacts with",
-                  {tissue.pairs.neighbours.begin(), tissue.pairs.neighbours.end()});
-  } else {
-    make.integers("neighbours", "cells that this cell interacts with", std::vector<std::int64_t>(cells.size(), 0));
-  }
+  make.integers("clamped", "1 where the base is held, 2 asleep", cells.clamped.values());
+  std::vector<std::int64_t> neighbours(tissue.pairs.neighbours.begin(), tissue.pairs.neighbours.end());
+  neighbours.resize(cells.total(), 0);
+  for (std::size_t i = cells.size(); i < cells.total(); ++i) neighbours[i] = (*tissue.neighbours_at_rest)[i];
+  make.integers("neighbours", "cells that this cell interacts with", std::move(neighbours));
   for (const auto& effect : model.effects) {
     effect->add_columns(tissue, frame.columns);
     effect->add_points(frame.points);
@@ -171,16 +169,19 @@ HistoryRow make_history_row(const Model<Dim>& model, const LengthMark& before, s
     fastest = std::max(fastest, (axis.flow()[k] - axis.flow()[k - 1]) / axis.bin_mm());
   }
   double volume = 0.0;
+  for (std::size_t i = 0; i < cells.total(); ++i) {
+    if (cells.clamped[i] != hold::at_base) volume += cells.volume[i];
+  }
   std::int64_t fewest = tissue.pairs.neighbours.empty() ? 0 : static_cast<std::int64_t>(cells.size());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (!cells.clamped[i]) volume += cells.volume[i];
-    if (!tissue.pairs.neighbours.empty()) fewest = std::min<std::int64_t>(fewest, tissue.pairs.neighbours[i]);
+  for (std::size_t i = 0; i < tissue.pairs.neighbours.size(); ++i) {
+    // next to cells at rest, partners are missing from the list only
+    if (cells.clamped[i] != hold::asleep) fewest = std::min<std::int64_t>(fewest, tissue.pairs.neighbours[i]);
   }
   const double section = volume / row.length_mm;
   const Energies energy = energies<Dim>(tissue);
   const Vec<Dim>& tip = axis.tip_mm();
   row.values = {tissue.time_h,
-                static_cast<double>(cells.size()),
+                static_cast<double>(cells.total()),
                 static_cast<double>(divisions),
                 tip[0],
                 tip[1],

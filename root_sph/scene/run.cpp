@@ -80,7 +80,7 @@ class Run {
   Model<Dim>& model() { return *built_.model; }
   const Model<Dim>& model() const { return *built_.model; }
   std::int64_t divisions() const {
-    return static_cast<std::int64_t>(model().solver.tissue().cells.size()) - cells_start_;
+    return static_cast<std::int64_t>(model().solver.tissue().cells.total()) - cells_start_;
   }
 
   Scene scene_;
@@ -124,7 +124,7 @@ Run<Dim>::Run(const Scene& scene, const RunOptions& options, const RunFolder& fo
     Soil soil = make_soil(scene, start);
     if (soil.port) add_soil_contact<Dim>(scene, model(), std::move(soil.contact), std::move(soil.port));
   }
-  cells_start_ = static_cast<std::int64_t>(tissue.cells.size());
+  cells_start_ = static_cast<std::int64_t>(tissue.cells.total());
   last_row_ = {0.0, model().solver.axis().length_mm()};
   refuse_unknown_fields<Dim>(model(), scene_);  // before anything is written
 
@@ -260,7 +260,7 @@ void Run<Dim>::write_summary(const std::string& status) const {
       {"time_h", tissue.time_h},
       {"steps", solver.steps()},
       {"cells_start", cells_start_},
-      {"cells_end", tissue.cells.size()},
+      {"cells_end", tissue.cells.total()},
       {"divisions", divisions()},
       {"tip_mm", tip},
       {"length_mm", solver.axis().length_mm()},
@@ -292,7 +292,7 @@ ExitStatus Run<Dim>::go() {
   const std::int64_t per_checkpoint = steps_per(scene_.output.checkpoint_every_h);
   const std::int64_t until = options_.until_h ? std::min(total, steps_per(*options_.until_h)) : total;
   const ClosedFormFlow theory = closed_form_flow<Dim>(scene_, solver.axis().length_mm());
-  log_.info("{}: {} cells, {:.4g} h in {} steps of {:.4g} h, {} threads", scene_.scene.name, tissue.cells.size(),
+  log_.info("{}: {} cells, {:.4g} h in {} steps of {:.4g} h, {} threads", scene_.scene.name, tissue.cells.total(),
             scene_.scene.duration_h, total, tissue.step_h, omp_get_max_threads());
   if (theory.tip_speed_mm_h > 0.0) {
     log_.info("closed form: tip speed {:.4f} mm/h, peak strain rate {:.3f} /h", theory.tip_speed_mm_h,
@@ -332,7 +332,7 @@ ExitStatus Run<Dim>::go() {
       if (frame_due) record();
       // at the first window that ends on or after the time that is due
       if (solver.steps() / per_checkpoint > done / per_checkpoint || solver.steps() == total) write_checkpoint_file();
-      progress.show({tissue.time_h, static_cast<std::int64_t>(tissue.cells.size()), solver.axis().length_mm(),
+      progress.show({tissue.time_h, static_cast<std::int64_t>(tissue.cells.total()), solver.axis().length_mm(),
                      static_cast<double>(steps_done_) / std::max(wall_s_, 1e-9), inertia_error_max_,
                      wall_s_ * static_cast<double>(until - solver.steps()) / static_cast<double>(steps_done_)});
     }
@@ -356,7 +356,7 @@ ExitStatus Run<Dim>::go() {
   }
   series_->finish();
   write_summary("done");
-  log_.info("done: {} cells after {} divisions, root {:.4f} mm, {:.1f} s, {:.0f} MB", tissue.cells.size(), divisions(),
+  log_.info("done: {} cells after {} divisions, root {:.4f} mm, {:.1f} s, {:.0f} MB", tissue.cells.total(), divisions(),
             solver.axis().length_mm(), wall_s_, peak_memory_mb());
   log_.info("inertia error {:.2g} % of p at the end, at most {:.2g} %; discretisation error about {:.2g} % ({})",
             100.0 * inertia_error_, 100.0 * inertia_error_max_,

@@ -108,6 +108,12 @@ struct NonAffineControlSection {
   double stiffness = 2.0;  ///< times E_axial (docs/decisions/0009)
 };
 
+/// Mature tissue that does not move leaves all loops (effects/sleep.hpp).
+struct SleepSection {
+  double strain_rate_per_h = 1e-5;
+  double stress_change = 0.02;  ///< over the pressure differential
+};
+
 /// A point of the tissue followed over time, or a bin at a distance from the tip.
 struct ProbeSection {
   std::string name;
@@ -170,6 +176,7 @@ struct Scene {
   std::optional<DivisionSection> division;
   std::optional<ResponseSection> response;
   std::optional<NonAffineControlSection> non_affine_control;
+  std::optional<SleepSection> sleep;
   std::vector<ObstacleSection> obstacles;
   std::vector<ProbeSection> probes;
   std::optional<SoilSection> soil;

@@ -414,6 +414,16 @@ std::vector<SectionSpec> make_schema() {
     key(&Nc::stiffness, "stiffness", "-", at_least(0), "Elastic penalty, times E_A.", "docs/decisions/0009"),
   }));
 
+  using Sl = SleepSection;
+  t.push_back(section<Sl>("sleep", optional,
+                          "Mature tissue that does not move is left out of the computation until something moves it.",
+                          [](auto& s) { return &s.sleep; }, {
+    key(&Sl::strain_rate_per_h, "strain_rate_per_h", "1/h", above(0),
+        "Tissue that strains no faster, from the base on, falls asleep.", "docs/effects.md"),
+    key(&Sl::stress_change, "stress_change", "-", above(0),
+        "Change of axial stress beside the sleeping tissue that wakes it, over the pressure differential.", "docs/effects.md"),
+  }));
+
   using Ob = ObstacleSection;
   t.push_back(section<Ob>("obstacle", repeated, "A rigid obstacle: penalty contact with Coulomb friction.",
                           [](auto& s) { return &s.obstacles; }, {

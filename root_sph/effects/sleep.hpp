@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Mature tissue that does not move falls asleep: from the base up to a margin beyond the last cell that moves or grows,
+// cells leave all loops. Those of the margin are held, as at the base, and go on as partners of the cells that move.
+// When the axial stress of the margin changes (thrust, bending, a neighbour that moves), or the pressure differential, all
+// wake. Cells in contact do not fall asleep.
+#pragma once
+
+#include "root_sph/effects/effect.hpp"
+
+namespace rootsoil {
+
+struct SleepParameters {
+  double strain_rate_per_h = 1e-5;  ///< cells that strain no faster, and move no faster than this times the root's length, do not move
+  double stress_change = 0.02;      ///< axial, of held cells, over the pressure differential, that wakes the root
+};
+
+template <int Dim>
+class SleepEffect final : public Effect<Dim> {
+ public:
+  SleepEffect(Solver<Dim>& solver, SleepParameters parameters);
+
+  void save(NamedReals& reals) const override;
+  void restore(const NamedReals& reals) override;
+  std::vector<std::pair<std::string, double>> history() const override;
+
+ private:
+  /// e of the non-affine control between two cells of which one rests at least.
+  struct RestingSlip {
+    std::int64_t first_id, second_id;  ///< first < second
+    Vec<Dim> slip_mm;                  ///< from the first to the second
+  };
+
+  bool moves(const Tissue<Dim>& tissue, std::size_t cell) const;
+  void look(Tissue<Dim>& tissue);
+  void fall_asleep(Tissue<Dim>& tissue);
+  void keep_slips(const Tissue<Dim>& tissue, const std::vector<char>& goes_to_rest);
+  void give_slips_back(const Tissue<Dim>& tissue);
+  void wake(Tissue<Dim>& tissue);
+  void watch(const Tissue<Dim>& tissue);
+
+  Solver<Dim>& solver_;
+  SleepParameters parameters_;
+  Field<Dim, double>& stress_asleep_;  ///< MPa, axial, of held cells when they fell asleep
+  std::vector<RestingSlip> slips_;
+  std::int64_t windows_ = 0;       ///< since the start, or since the root woke
+  double asleep_beyond_mm_ = 0.0;  ///< of the tip: where cells fall asleep before the next window; 0: none do
+  double rest_beyond_mm_ = 0.0;    ///< and where they go to rest
+  double length_mm_ = 0.0;         ///< at the latest update of the resting cells' distances
+  double pressure_MPa_ = 0.0;      ///< when cells fell asleep
+  bool wake_wanted_ = false;       ///< before the next window
+  bool slips_wanted_ = false;      ///< in this window
+  std::int64_t woken_ = 0;         ///< times
+};
+
+}  // namespace rootsoil
