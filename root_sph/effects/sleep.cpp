@@ -20,6 +20,10 @@ template <int Dim>
 SleepEffect<Dim>::SleepEffect(Solver<Dim>& solver, SleepParameters parameters)
     : solver_(solver),
       parameters_(parameters),
+      looked_at_(solver.tissue().cells.template declare<Vec<Dim>>({"looked_at", "mm", "place at the latest look for cells that do not move"},
+                                                                  on_division::copy<Dim, Vec<Dim>>)),
+      strain_(solver.tissue().cells.template declare<double>({"strain_since_look", "1", "along the root, since then"},
+                                                             on_division::copy<Dim, double>)),
       stress_asleep_(solver.tissue().cells.template declare<double>(
           {"stress_asleep", "MPa", "axial stress when the cell fell asleep"}, on_division::copy<Dim, double>)) {
   solver.tissue().neighbours_at_rest = &solver.tissue().cells.template declare<std::int64_t>(
@@ -38,16 +42,17 @@ SleepEffect<Dim>::SleepEffect(Solver<Dim>& solver, SleepParameters parameters)
   hooks.stiffness.emplace_back("sleep", [this](Tissue<Dim>& t, std::vector<Vec<Dim>>&) { give_slips_back(t); });
   hooks.window_end.emplace_back("sleep", [this](Tissue<Dim>& t) {
     watch(t);
-    if (!wake_wanted_ && ++windows_ % windows_between_looks == 0) look(t);
+    for (std::size_t i = 0; i < t.cells.size(); ++i) strain_[i] += t.axial_strain[i];
+    if (!wake_wanted_ && windows_++ % windows_between_looks == 0) look(t);
   });
 }
 
 template <int Dim>
 bool SleepEffect<Dim>::moves(const Tissue<Dim>& tissue, std::size_t i) const {
   if (tissue.cells.clamped[i] != hold::none) return false;
-  const double strain = (tissue.deformation[i] - Mat<Dim>::Identity()).norm();
-  return strain > parameters_.strain_rate_per_h * solver_.window_h() ||
-         tissue.cells.velocity[i].norm() > parameters_.strain_rate_per_h * solver_.axis().length_mm();
+  const double strain = parameters_.strain_rate_per_h * (tissue.time_h - looked_h_);
+  return std::abs(strain_[i]) > strain ||
+         (tissue.cells.position[i] - looked_at_[i]).norm() > strain * solver_.axis().length_mm();
 }
 
 /// Where the part that does not move begins, and whether it is worth while.
@@ -55,12 +60,17 @@ template <int Dim>
 void SleepEffect<Dim>::look(Tissue<Dim>& tissue) {
   const auto& cells = tissue.cells;
   const auto& options = solver_.options();
-  std::vector<char> busy(cells.size(), 0);
+  std::vector<char> busy(cells.size(), windows_ == 1);  // the first look only takes note
   for (const auto& [name, mark] : solver_.hooks().busy) mark(tissue, busy);
   double moving_mm = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (busy[i] || moves(tissue, i)) moving_mm = std::max(moving_mm, cells.distance_to_tip[i]);
   }
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    looked_at_[i] = cells.position[i];
+    strain_[i] = 0.0;
+  }
+  looked_h_ = tissue.time_h;
   double reach_mm = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells.distance_to_tip[i] < moving_mm) continue;
@@ -196,9 +206,28 @@ std::vector<std::pair<std::string, double>> SleepEffect<Dim>::history() const {
   return {{"cells_at_rest", static_cast<double>(cells.total() - cells.size())}, {"times_woken", static_cast<double>(woken_)}};
 }
 
+namespace {
+
+/// What is computed anew in every window stays, for cells at rest, as it was when they fell asleep: for outputs and energies.
+/// Calls visit(key, numbers of the cells at rest) for every such column.
+template <int Dim, class Visit>
+void for_each_scratch(const ParticleStore<Dim>& cells, Visit&& visit) {
+  for (const auto& field : cells.fields()) {
+    if (field->info().storage != Storage::scratch) continue;
+    const auto first = cells.size() * static_cast<std::size_t>(field->components());
+    const std::string key = "sleep/scratch/" + field->info().name;
+    field->is_integer() ? visit(key, field->integers().subspan(first)) : visit(key, field->reals().subspan(first));
+  }
+}
+
+}  // namespace
+
 template <int Dim>
 void SleepEffect<Dim>::save(NamedReals& reals) const {
-  reals["sleep/state"] = {static_cast<double>(windows_), asleep_beyond_mm_, rest_beyond_mm_, length_mm_, pressure_MPa_,
+  for_each_scratch<Dim>(solver_.tissue().cells, [&](const std::string& key, auto numbers) {
+    reals[key].assign(numbers.begin(), numbers.end());
+  });
+  reals["sleep/state"] = {static_cast<double>(windows_), looked_h_, asleep_beyond_mm_, rest_beyond_mm_, length_mm_, pressure_MPa_,
                           wake_wanted_ ? 1.0 : 0.0,      static_cast<double>(woken_)};
   std::vector<double>& slips = reals["sleep/slips"];
   for (const RestingSlip& s : slips_) {
@@ -210,14 +239,21 @@ void SleepEffect<Dim>::save(NamedReals& reals) const {
 
 template <int Dim>
 void SleepEffect<Dim>::restore(const NamedReals& reals) {
+  for_each_scratch<Dim>(solver_.tissue().cells, [&](const std::string& key, auto numbers) {
+    const std::vector<double>& saved = reals.at(key);
+    ROOTSOIL_ASSERT(saved.size() == numbers.size());
+    std::transform(saved.begin(), saved.end(), numbers.begin(),
+                   [](double x) { return static_cast<typename decltype(numbers)::element_type>(x); });
+  });
   const std::vector<double>& state = reals.at("sleep/state");
   windows_ = static_cast<std::int64_t>(state.at(0));
-  asleep_beyond_mm_ = state.at(1);
-  rest_beyond_mm_ = state.at(2);
-  length_mm_ = state.at(3);
-  pressure_MPa_ = state.at(4);
-  wake_wanted_ = state.at(5) != 0.0;
-  woken_ = static_cast<std::int64_t>(state.at(6));
+  looked_h_ = state.at(1);
+  asleep_beyond_mm_ = state.at(2);
+  rest_beyond_mm_ = state.at(3);
+  length_mm_ = state.at(4);
+  pressure_MPa_ = state.at(5);
+  wake_wanted_ = state.at(6) != 0.0;
+  woken_ = static_cast<std::int64_t>(state.at(7));
   const std::vector<double>& slips = reals.at("sleep/slips");
   slips_.clear();
   for (std::size_t k = 0; k + Dim + 2 <= slips.size(); k += Dim + 2) {

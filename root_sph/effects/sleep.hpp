@@ -10,8 +10,10 @@
 namespace rootsoil {
 
 struct SleepParameters {
-  double strain_rate_per_h = 1e-5;  ///< cells that strain no faster, and move no faster than this times the root's length, do not move
-  double stress_change = 0.02;      ///< axial, of held cells, over the pressure differential, that wakes the root
+  /// Cells that strain no faster along the root, and move no faster than this times its length, do not move: mean over
+  /// ten windows.
+  double strain_rate_per_h = 1e-4;
+  double stress_change = 0.05;      ///< axial, of held cells, over the pressure differential, that wakes the root
 };
 
 template <int Dim>
@@ -40,9 +42,12 @@ class SleepEffect final : public Effect<Dim> {
 
   Solver<Dim>& solver_;
   SleepParameters parameters_;
+  Field<Dim, Vec<Dim>>& looked_at_;    ///< mm, place at the latest look
+  Field<Dim, double>& strain_;         ///< axial, since the latest look
   Field<Dim, double>& stress_asleep_;  ///< MPa, axial, of held cells when they fell asleep
   std::vector<RestingSlip> slips_;
   std::int64_t windows_ = 0;       ///< since the start, or since the root woke
+  double looked_h_ = 0.0;          ///< time of the latest look
   double asleep_beyond_mm_ = 0.0;  ///< of the tip: where cells fall asleep before the next window; 0: none do
   double rest_beyond_mm_ = 0.0;    ///< and where they go to rest
   double length_mm_ = 0.0;         ///< at the latest update of the resting cells' distances

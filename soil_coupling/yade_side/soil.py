@@ -35,8 +35,8 @@ from engine import VERSION, O, utils, wrapper
 from soil_file import Refused, read_soil_file, write_soil_file
 
 SUBSTEPS_AT_LEAST = 10
-FORCE_SAMPLES = 5  # substeps at which forces are read, evenly spread over an interval
-CHECK_EVERY = 20  # intervals between two looks at what is costly to see
+FORCE_SAMPLES = 4  # substeps at which forces are read, evenly spread over an interval
+CHECK_EVERY = 50  # intervals between two looks at what is costly to see
 CARVE = 0.95  # a grain goes where it overlaps the root by more than the rest of its radius
 SETTLED = 0.02  # mean unbalanced over mean contact force, after the root has been put in
 SETTLE_BLOCKS, SETTLE_STEPS = 100, 200

@@ -102,6 +102,51 @@ checkpoint_every_h = 0.013
 )
 
 
+# Two thirds of it are mature and fall asleep at 0.2 h; the step of pressure wakes them.
+SLEEPING = """\
+[scene]
+name = "sleeping"
+duration_h = 0.6
+
+[root]
+length_mm = 0.9
+radius_mm = 0.03
+cell_size_mm = 0.01
+
+[tissue]
+E_axial_MPa = 1020.0
+
+[pressure]
+table = [[0.0, 1.0], [0.45, 1.0], [0.47, 0.8]]
+
+[growth]
+lambda0_ug_mm3_h = 4.3e5
+x_g_mm = -0.05
+s_g_mm = 0.1
+c_g = -1.0
+mature_at_mm = 0.15
+mature_width_mm = 0.05
+
+[division]
+l0_mm = 0.012
+c_d = 1.0
+s_d_per_mm2 = 45.0
+x_d_mm = 0.12
+constant_beyond_mm = 0.5
+
+[non_affine_control]
+
+[sleep]
+
+[numerics]
+step_h = 2e-4
+
+[output]
+every_h = 0.05
+checkpoint_every_h = 0.13
+"""
+
+
 @dataclass(frozen=True)
 class Done:
     """How the program ended, and what it wrote."""

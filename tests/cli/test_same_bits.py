@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from cli_support import FULL, SMALL, Program, checkpoint, frames, history, same_bits, same_results, summary
+from cli_support import FULL, SLEEPING, SMALL, Program, checkpoint, frames, history, same_bits, same_results, summary
 
 
 def test_the_scene_has_it_all(full_run: Path):
@@ -43,6 +43,20 @@ def test_pauses_at_awkward_times(program: Program, full_run: Path):
     done = program("run", scene, "--out", out, "--resume", "--threads", 2)
     assert done.status == 0, done.err
     same_results(out, full_run)
+
+
+def test_pauses_while_the_root_sleeps(program: Program):
+    """Before it falls asleep, asleep, and between the step of pressure and its waking."""
+    scene = program.scene(SLEEPING)
+    assert program("run", scene, "--out", "whole").status == 0
+    resting = [row["cells_at_rest"] for row in history(program.folder / "whole")]
+    assert max(resting) > 100 and history(program.folder / "whole")[-1]["times_woken"] == 1
+    resume: list[str] = []
+    for until in (0.19, 0.2, 0.31, 0.45, 0.46, 0.47):
+        assert program("run", scene, "--out", "out", "--until", until, *resume).status == 0
+        resume = ["--resume"]
+    assert program("run", scene, "--out", "out", "--resume").status == 0
+    same_results(program.folder / "out", program.folder / "whole")
 
 
 def test_the_resolved_scene_resumes(program: Program, full_run: Path):

@@ -54,6 +54,43 @@ TYPED_TEST(Store, RefusesANameTwice) {
   EXPECT_THROW(store.template declare<double>({"volume", "1", ""}, on_division::copy<dim, double>), std::logic_error);
 }
 
+/// Cells at rest keep every number, whatever is sorted and divided before them, and come back.
+TYPED_TEST(Store, CellsAtRestKeepEveryNumber) {
+  constexpr int dim = TypeParam::value;
+  ParticleStore<dim> store;
+  store.resize(5);
+  this->number(store);
+  for (std::size_t i = 0; i < 5; ++i) {
+    store.cell_id[i] = static_cast<std::int64_t>(i);
+    store.shape[i].setIdentity();
+  }
+  const auto volume_of = [&](std::int64_t id) {
+    const auto& ids = store.cell_id.values();
+    const auto found = std::find(ids.begin(), ids.end(), id);
+    return store.volume[static_cast<std::size_t>(found - ids.begin())];
+  };
+  const double third = volume_of(3), fourth = volume_of(4);
+  store.rest(2);
+  EXPECT_EQ(store.size(), 3u);
+  EXPECT_EQ(store.total(), 5u);
+  EXPECT_EQ(store.active(store.volume).size(), 3u);
+  store.permute({2, 0, 1});
+  EXPECT_EQ(store.cell_id[0], 2);
+  store.divide(1, Vec<dim>::UnitX(), 2.0, 10, 11);
+  EXPECT_EQ(store.size(), 4u);
+  EXPECT_EQ(store.total(), 6u);
+  EXPECT_EQ(store.cell_id[1], 10);
+  EXPECT_EQ(store.cell_id[3], 11);
+  EXPECT_EQ(store.parent_id[3], 0);
+  EXPECT_EQ(volume_of(3), third);
+  EXPECT_EQ(volume_of(4), fourth);
+  store.wake();
+  EXPECT_EQ(store.size(), 6u);
+  std::vector<std::int64_t> ids = store.cell_id.values();
+  std::sort(ids.begin(), ids.end());
+  EXPECT_EQ(ids, (std::vector<std::int64_t>{1, 2, 3, 4, 10, 11}));
+}
+
 TYPED_TEST(Store, NewCellsAndNewColumnsAreZero) {
   constexpr int dim = TypeParam::value;
   ParticleStore<dim> store;
