@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import hashlib
 import json
 import subprocess
 import sys
@@ -24,7 +23,7 @@ from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 
 from rootsoil_tools import draw, measure
-from rootsoil_tools.runs import Run, RunError, read_summary
+from rootsoil_tools.runs import Run, RunError, read_summary, request_of
 from rootsoil_tools.theory import Model, model_of
 
 PROJECT = Path(__file__).resolve().parent.parent
@@ -46,13 +45,6 @@ class Member:
     radius_drift: float  # 1/h
 
 
-def request_of(program: Path, scene: Path, p: float, arguments: list[str]) -> dict:
-    """What makes two runs the same: the scene file, the pressure, further arguments, the program's version."""
-    version = subprocess.run([program, "version"], capture_output=True, text=True, check=True).stdout.strip()
-    digest = hashlib.sha256(scene.read_bytes()).hexdigest()
-    return {"scene_sha256": digest, "p_MPa": p, "arguments": arguments, "version": version}
-
-
 def ensure_run(
     program: Path, scene: Path, p: float, out: Path, until_h: float, arguments: list[str], threads: list[str]
 ) -> Path:
@@ -62,7 +54,7 @@ def ensure_run(
     """
     folder = out / f"p_{p:g}"
     record = out / f"p_{p:g}.json"
-    request = request_of(program, scene, p, arguments)
+    request = request_of(program, scene, p_MPa=p, arguments=arguments)
     command = [str(program), "run", str(scene), "--out", str(folder), "--set", f"pressure.differential_MPa={p:g}"]
     command += ["--until", f"{until_h:g}", *arguments, *threads]
     if folder.exists():

@@ -300,6 +300,19 @@ TEST_F(Yade, APackedSampleIsAtRestUnderItsPressureAndKept) {
               AllOf(HasSubstr("not a soil sample of this version"), HasSubstr("2018.02b")));
 }
 
+TEST_F(Yade, AMovableStoneKeepsItsSizeAndPlaceInPacking) {
+  SoilRecipe r = test::packed_grains();
+  r.obstacles = {{.name = "stone", .shape = "stone", .position_mm = {3, 0, 0}, .radius_mm = 0.5, .movable = true}};
+  YadeSoil s = soil(r);
+  s.advance(push(0.3, 0.0));
+  const SoilSnapshot snapshot = s.snapshot();
+  const auto largest = std::max_element(snapshot.radius_mm.begin(), snapshot.radius_mm.end());
+  const std::size_t stone = static_cast<std::size_t>(largest - snapshot.radius_mm.begin());
+  EXPECT_NEAR(*largest, 0.5, 0.005);
+  EXPECT_NEAR(snapshot.position_mm[stone][0], 3.0, 0.05);
+  EXPECT_NEAR(snapshot.position_mm[stone][1], 0.0, 0.05);
+}
+
 TEST_F(Yade, TheDensityMakesTheSoilQuasiStatic) {
   SoilRecipe r = test::packed_grains();
   r.inertial_number_max = 0.02;

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
+import subprocess
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -124,3 +126,10 @@ def read_summary(folder: Path) -> dict:
         return {}
     except (OSError, json.JSONDecodeError) as error:
         raise RunError(f"{folder / 'summary.json'}: {error}") from error
+
+
+def request_of(program: Path, scene: Path, **choices: object) -> dict:
+    """What makes two runs the same: the scene file, what was chosen beside it, the program's version."""
+    version = subprocess.run([program, "version"], capture_output=True, text=True, check=True).stdout.strip()
+    digest = hashlib.sha256(scene.read_bytes()).hexdigest()
+    return {"scene_sha256": digest, **choices, "version": version}
