@@ -160,7 +160,7 @@ def draw_series(runs: list[Measured], out: Path) -> None:
     axes = draw.place(figure, 13.0, 12.0, 73.0, 50.0)
     colours = [draw.SIMULATION, draw.DATA, *draw.DIVISIONS]
     for ((pressure, friction), points), colour in zip(curves(runs).items(), itertools.cycle(colours)):
-        own = [r for r in runs if r.pressure_MPa == pressure and (r.friction_deg == friction or np.isnan(r.friction_deg) and np.isnan(friction))]
+        own = [r for r in runs if label_of(r.pressure_MPa, r.friction_deg) == label_of(pressure, friction)]
         axes.plot(
             [r.inertial_number for r in own], [r.Q_over_P for r in own], "o", color=colour, markersize=2.5, alpha=0.4, mew=0
         )

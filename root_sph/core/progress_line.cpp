@@ -22,7 +22,8 @@ void fit_terminal(std::string& line) {
 
 std::string clock_text(double seconds) {
   const auto s = static_cast<long>(seconds + 0.5);
-  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60) : fmt::format("{}:{:02}", s / 60, s % 60);
+  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
+                   : fmt::format("{}:{:02}", s / 60, s % 60);
 }
 
 ProgressLine::ProgressLine(bool quiet)
@@ -34,7 +35,8 @@ bool ProgressLine::due() const { return !quiet_ && std::chrono::steady_clock::no
 
 void ProgressLine::show(std::string text) {
   if (!due()) return;
-  next_ = std::chrono::steady_clock::now() + (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(60000));
+  next_ = std::chrono::steady_clock::now() +
+          (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(60000));
   if (terminal_) {
     fit_terminal(text);
     fmt::print(stderr, "\r{}\033[K", text);

@@ -42,7 +42,8 @@ def mean_wall_stress(recipe: dict[str, Any], wall_ids: list[int]) -> float:
     low, high = box_corners(recipe)
     size = high - low
     area = np.prod(size) / size  # of the walls across each axis
-    return float(np.mean([abs(O.forces.f(i)[k // 2]) / area[k // 2] for k, i in enumerate(wall_ids[: 2 * recipe["dimension"]])]))
+    counting = enumerate(wall_ids[: 2 * recipe["dimension"]])
+    return float(np.mean([abs(O.forces.f(i)[k // 2]) / area[k // 2] for k, i in counting]))
 
 
 class Growth:

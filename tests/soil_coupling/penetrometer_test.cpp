@@ -99,7 +99,9 @@ TEST(Penetrometer, AveragesTheTipOverItsSectionAndTheSeeds) {
 
 TEST(Penetrometer, AnInterruptionKeepsWhatWasRead) {
   const SoilRecipe recipe = test::packed_grains();
-  const SoilPortFactory factory = [](const SoilRecipe&, const SoilStart&) { return std::make_unique<FormulaSoil>(0.1); };
+  const SoilPortFactory factory = [](const SoilRecipe&, const SoilStart&) {
+    return std::make_unique<FormulaSoil>(0.1);
+  };
   int intervals = 0;
   const PenetrometerResult result = penetrate(recipe, probe(), factory, [&](const std::string&) {
     if (++intervals == 250) throw Interrupted();  // in the second seed: 200 intervals each
