@@ -28,6 +28,7 @@ from rootsoil_tools.runs import RunError, request_of
 PROJECT = Path(__file__).resolve().parent.parent
 INERTIAL_NUMBERS = (0.1, 0.03, 0.01, 0.003)
 QUASI_STATIC = 0.01  # below it Q should no longer depend on the inertial number
+BESIDE = 1.08  # a sample's dot stands beside its mean
 QUICK_NUMBERS, QUICK_SEEDS = (0.1, 0.03), (1, 2)
 QUICK = (
     "soil.box_from_mm=[0.0, -1.2]",
@@ -157,12 +158,18 @@ def draw_series(runs: list[Measured], out: Path) -> None:
     """Q/P against the inertial number: dots for the samples, mean and scatter between them."""
     draw.use_style()
     figure = draw.new_figure(90.0, 66.0)
-    axes = draw.place(figure, 13.0, 12.0, 73.0, 50.0)
+    axes = draw.place(figure, 12.0, 11.0, 74.0, 48.0)
     colours = [draw.SIMULATION, draw.DATA, *draw.DIVISIONS]
     for ((pressure, friction), points), colour in zip(curves(runs).items(), itertools.cycle(colours)):
         own = [r for r in runs if label_of(r.pressure_MPa, r.friction_deg) == label_of(pressure, friction)]
         axes.plot(
-            [r.inertial_number for r in own], [r.Q_over_P for r in own], "o", color=colour, markersize=2.5, alpha=0.4, mew=0
+            [BESIDE * r.inertial_number for r in own],
+            [r.Q_over_P for r in own],
+            "o",
+            color=colour,
+            markersize=2.5,
+            mfc="white",
+            mew=0.6,
         )
         axes.errorbar(
             [p.inertial_number for p in points],
@@ -170,19 +177,20 @@ def draw_series(runs: list[Measured], out: Path) -> None:
             yerr=[0.0 if np.isnan(p.deviation) else p.deviation for p in points],
             color=colour,
             marker="s",
-            markersize=3.5,
-            linewidth=1.2,
-            capsize=2.5,
+            markersize=3.0,
+            linewidth=0.9,
+            capsize=3.0,
+            zorder=1.5,
             label=label_of(pressure, friction),
         )
-    axes.axvline(QUASI_STATIC, **draw.THEORY_LINE)
+    axes.axvline(QUASI_STATIC, color=draw.OBSTACLE, linewidth=0.8, zorder=0)
     numbers = sorted({r.inertial_number for r in runs} | {QUASI_STATIC})
     axes.set(xscale="log", xlabel="inertial number I", ylabel="resistance over confining pressure Q/P")
     axes.set_xticks(numbers, [f"{number:g}" for number in numbers])
     axes.minorticks_off()
     axes.set_xlim(numbers[0] / 1.3, numbers[-1] * 1.3)
     axes.set_ylim(bottom=0.0)
-    axes.legend(frameon=False, loc="upper left", bbox_to_anchor=(0.05, 1.0))
+    axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(-0.02, 1.0), borderaxespad=0.0, ncols=2)
     figure.savefig(out, dpi=draw.DOTS_PER_INCH)
     plt.close(figure)
 
