@@ -2,17 +2,18 @@
 #include "soil_coupling/penetrometer.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
 
 #include "root_sph/core/errors.hpp"
+#include "root_sph/core/interruption.hpp"
+#include "root_sph/core/progress_line.hpp"
 #include "soil_coupling/yade_soil.hpp"
 
 namespace rootsoil {
@@ -87,6 +88,7 @@ Rod make_rod(const Penetrometer& probe, double length_mm) {
 
 PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe, const SoilPortFactory& make_soil,
                              const std::function<void(const std::string&)>& progress) {
+  using Clock = std::chrono::steady_clock;
   PenetrometerResult result;
   const Rod rod = make_rod(probe, probe.depth_mm);
   const double area = section(probe, recipe.dimension);
@@ -94,7 +96,7 @@ PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe
       static_cast<std::int64_t>(std::ceil(probe.depth_mm / (probe.rate_mm_h * probe.interval_h) - 1e-9));
   const double step_mm = probe.depth_mm / static_cast<double>(intervals);
   std::vector<double> fluctuations, inertial_numbers;
-  for (std::int64_t k = 0; k < probe.seeds; ++k) {
+  const auto push = [&](std::int64_t k) {
     SoilRecipe own = recipe;
     own.seed = recipe.seed + k;
     if (probe.friction_deg >= 0.0) own.root_friction_deg = probe.friction_deg;
@@ -104,6 +106,7 @@ PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe
     start.progress = progress;
     const std::unique_ptr<SoilPort> soil = make_soil(own, start);
     std::vector<double> averaged;
+    const Clock::time_point began = Clock::now();
     for (std::int64_t i = 0; i < intervals; ++i) {
       const double depth_mm = step_mm * static_cast<double>(i);
       SurfaceMotion motion = motion_of(rod, recipe.box_from_mm[0] + depth_mm, step_mm);
@@ -124,12 +127,19 @@ PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe
       if (reading.depth_mm >= probe.average_from_mm) averaged.push_back(reading.Q_MPa);
       inertial_numbers.push_back(reading.inertial_number);
       if (progress) {
-        progress(fmt::format("penetrometer, seed {} of {}: depth {:.3f} of {:.3f} mm, Q {:.3f} MPa", k + 1, probe.seeds,
-                             reading.depth_mm, probe.depth_mm, reading.Q_MPa));
+        const double spent_s = std::chrono::duration<double>(Clock::now() - began).count();
+        const double left_s = spent_s * static_cast<double>(intervals - i - 1) / static_cast<double>(i + 1);
+        progress(fmt::format("seed {} of {}: depth {:.3f} of {:g} mm, Q {:.3f} MPa, {} left", k + 1, probe.seeds,
+                             reading.depth_mm, probe.depth_mm, reading.Q_MPa, clock_text(left_s)));
       }
     }
     result.Q_of_seed_MPa.push_back(mean(averaged));
     fluctuations.push_back(deviation(averaged));
+  };
+  try {
+    for (std::int64_t k = 0; k < probe.seeds; ++k) push(k);
+  } catch (const Interrupted&) {
+    result.interrupted = true;
   }
   result.Q_MPa = mean(result.Q_of_seed_MPa);
   result.Q_deviation_MPa = deviation(result.Q_of_seed_MPa);
@@ -153,12 +163,19 @@ int run_penetrometer(const SoilRecipe& recipe, const Penetrometer& probe, const 
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(fmt::format("{}: {}", folder.string(), error.message()));
-  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const Interruption interruption;
+  ProgressLine line(quiet);
   const PenetrometerResult result = penetrate(recipe, probe, make_yade_soil, [&](const std::string& text) {
-    if (!quiet && terminal) fmt::print(stderr, "\r\033[K{}", text);
+    if (interruption.requested()) throw Interrupted();
+    line.show(text);
   });
-  if (!quiet && terminal) fmt::print(stderr, "\r\033[K");
+  line.end();
   write_csv(result, csv);
+  if (result.interrupted) {
+    fmt::print("interrupted after {} of {} seeds; {} holds what was read so far\n", result.Q_of_seed_MPa.size(),
+               probe.seeds, csv.string());
+    return static_cast<int>(ExitStatus::interrupted);
+  }
   const double P = recipe.confining_pressure_MPa;
   nlohmann::ordered_json summary{{"Q_MPa", result.Q_MPa},
                                  {"Q_deviation_MPa", result.Q_deviation_MPa},

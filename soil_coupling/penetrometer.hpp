@@ -38,9 +38,14 @@ struct PenetrometerResult {
   double Q_deviation_MPa = 0.0;               ///< standard deviation over the seeds; 0 with one seed
   double Q_fluctuation_MPa = 0.0;             ///< standard deviation along the way, mean over the seeds
   double inertial_number = 0.0;
+  bool interrupted = false;  ///< there are readings, but no means of the last seed
 };
 
-/// Pushes the probe into one sample for each seed.
+/// Thrown by whoever hears of the progress, to stop.
+struct Interrupted {};
+
+/// Pushes the probe into one sample for each seed. `progress` is called at every interval and while samples are made;
+/// when it throws Interrupted, the result holds what was read so far.
 PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe, const SoilPortFactory& make_soil,
                              const std::function<void(const std::string&)>& progress = {});
 

@@ -53,7 +53,7 @@ Json packing_json(const SoilRecipe& r) {
 }  // namespace
 
 std::string packing_key(const SoilRecipe& recipe) {
-  constexpr int packing_version = 2;  // raise it when packing.py packs differently
+  constexpr int packing_version = 3;  // raise it when packing.py packs differently
   Json key = packing_json(recipe);
   key["packing_version"] = packing_version;
   return key.dump();

@@ -20,14 +20,14 @@ WINDOW_MM = 0.1  # over which the lines are smoothed
 
 
 def read_csv(path: Path) -> dict[int, dict[str, np.ndarray]]:
-    """Columns by seed: depth_mm, Q_MPa, shaft_force_N, each (readings,)."""
+    """Columns by seed: depth_mm, Q_MPa, shaft_force_N, overlap_max, each (readings,)."""
     with path.open() as file:
         rows = list(csv.DictReader(file))
     seeds = sorted({int(row["seed"]) for row in rows})
     return {
         seed: {
             name: np.array([float(row[name]) for row in rows if int(row["seed"]) == seed])
-            for name in ("depth_mm", "Q_MPa", "shaft_force_N")
+            for name in ("depth_mm", "Q_MPa", "shaft_force_N", "overlap_max")
         }
         for seed in seeds
     }

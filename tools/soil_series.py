@@ -30,7 +30,7 @@ from matplotlib.axes import Axes
 
 from rootsoil_tools import draw, measure
 from rootsoil_tools.runs import Run, RunError
-from rootsoil_tools.series import PROGRAM, PROJECT, Series
+from rootsoil_tools.series import PROGRAM, PROJECT, Series, resistance_MPa
 from rootsoil_tools.theory import model_of
 
 PRESSURES_MPA = (0.01, 0.02, 0.035, 0.05)
@@ -217,7 +217,7 @@ def pressure_series(options: argparse.Namespace, until_h: float) -> str:
         probe = series.penetrometer(
             f"P_{confining:g}_probe", soil + probe_settings(scene, here[0].free_speed, options.seeds, DEPTHS_MM)
         )
-        Q_MPa[confining] = float(probe["Q_MPa"])
+        Q_MPa[confining] = resistance_MPa(probe)
         turgor = here[0].pressure_MPa
         matched = turgor * (1.0 - float(np.mean([p.relative_force for p in here])))
         run = Run(alone.run(f"P_{confining:g}_matched", [f"pressure.differential_MPa={matched:.6g}"], until_h))
@@ -277,7 +277,7 @@ def flexibility_series(options: argparse.Namespace, until_h: float) -> str:
     depths = (max(0.0, float(np.interp(SETTLED_FROM * until_h, stiffest["time_h"], reached))), float(reached[-1]))
     width = 2.0 * float(scene["root"]["radius_mm"])
     probe = series.penetrometer("probe", probe_settings(scene, passages[0].free_speed, options.seeds, depths))
-    rigid = float(probe["Q_MPa"]) * (width if int(scene["scene"].get("dimension", 2)) == 2 else np.pi * width**2 / 4.0)
+    rigid = resistance_MPa(probe) * (width if int(scene["scene"].get("dimension", 2)) == 2 else np.pi * width**2 / 4.0)
     write_csv(passages, [{"rigid_force": rigid}] * len(passages), options.out / "flexibility.csv")
     draw_flexibility(passages, rigid, options.out / "flexibility.png")
     lines = [f"{'E_A (MPa)':>9} {'tip force (N/mm)':>17} {'over rigid':>10} {'speed/free':>16} {'deviation, % (most)':>20}"]

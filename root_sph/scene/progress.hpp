@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// One progress line on a terminal, a line a minute elsewhere.
+// What a run says about how far it is.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
+
+#include "root_sph/core/progress_line.hpp"
 
 namespace rootsoil {
 
@@ -18,19 +19,13 @@ struct ProgressState {
 
 class Progress {
  public:
-  Progress(bool quiet, double duration_h);
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  ~Progress() { end(); }  ///< also when an error leaves the run: its message starts on a new line
+  Progress(bool quiet, double duration_h) : line_(quiet), duration_h_(duration_h) {}
   void show(const ProgressState& state);
-  /// Ends the line on a terminal.
-  void end();
+  void end() { line_.end(); }
 
  private:
-  bool quiet_, terminal_;
+  ProgressLine line_;
   double duration_h_;
-  bool line_open_ = false;
-  std::chrono::steady_clock::time_point next_;
 };
 
 }  // namespace rootsoil

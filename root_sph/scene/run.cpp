@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The only run loop.
 #include "root_sph/core/errors.hpp"
+#include "root_sph/core/interruption.hpp"
 #include "root_sph/effects/probe.hpp"
 #include "root_sph/io/checkpoint.hpp"
 #include "root_sph/io/files.hpp"
@@ -25,31 +26,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <memory>
 
 namespace rootsoil {
 namespace {
-
-volatile std::sig_atomic_t stop_requested = 0;
-
-/// Ctrl-C and kill end a run at the next window, with a checkpoint. Restores the old handlers.
-class SignalGuard {
- public:
-  SignalGuard() {
-    stop_requested = 0;
-    old_interrupt_ = std::signal(SIGINT, [](int) { stop_requested = 1; });
-    old_terminate_ = std::signal(SIGTERM, [](int) { stop_requested = 1; });
-  }
-  ~SignalGuard() {
-    std::signal(SIGINT, old_interrupt_);
-    std::signal(SIGTERM, old_terminate_);
-  }
-
- private:
-  void (*old_interrupt_)(int);
-  void (*old_terminate_)(int);
-};
 
 double peak_memory_mb() {
   rusage usage{};
@@ -304,7 +284,7 @@ ExitStatus Run<Dim>::go() {
   }
   if (options_.resume) log_.info("resumed at {:.4g} h", tissue.time_h);
 
-  SignalGuard signals;
+  const Interruption interruption;
   Progress progress(options_.quiet, scene_.scene.duration_h);
   const auto start = std::chrono::steady_clock::now();
   const auto measure_wall = [&] {
@@ -312,7 +292,7 @@ ExitStatus Run<Dim>::go() {
   };
   if (solver.steps() == 0) record();
   try {
-    while (solver.steps() < until && !stop_requested) {
+    while (solver.steps() < until && !interruption.requested()) {
       const std::int64_t done = solver.steps();
       // windows end at output times, so that where they lie does not depend on where a run was interrupted
       const std::int64_t next_mark = std::min(total, (done / per_frame + 1) * per_frame);
@@ -349,10 +329,10 @@ ExitStatus Run<Dim>::go() {
   measure_wall();
   if (solver.steps() < total) {
     write_checkpoint_file();
-    write_summary(stop_requested ? "interrupted" : "paused");
-    log_.info("{} at {:.4g} h; checkpoint written, --resume goes on", stop_requested ? "interrupted" : "paused",
+    write_summary(interruption.requested() ? "interrupted" : "paused");
+    log_.info("{} at {:.4g} h; checkpoint written, --resume goes on", interruption.requested() ? "interrupted" : "paused",
               tissue.time_h);
-    return stop_requested ? ExitStatus::interrupted : ExitStatus::done;
+    return interruption.requested() ? ExitStatus::interrupted : ExitStatus::done;
   }
   series_->finish();
   write_summary("done");

@@ -473,7 +473,7 @@ void complete_penetrometer(Scene& scene, const Origins& origins) {
   const SoilSection& soil = *scene.soil;
   constexpr double grains_ahead = 4.0;
   const double deepest = soil.box_to_mm[0] - soil.box_from_mm[0] - grains_ahead * soil.d_max_mm;
-  if (probe.depth_mm > deepest) {
+  if (probe.depth_mm > deepest * (1 + 1e-9)) {  // the message's own number is allowed
     origins.fail(
         "penetrometer.depth_mm", "the probe would meet the wall at the other end", fmt::format("{}", probe.depth_mm),
         fmt::format("at most {:.6g} mm: the box less {} grains", deepest, grains_ahead), "make the box longer");

@@ -157,9 +157,9 @@ def grains() -> list[Any]:
     return [b for b in O.bodies if is_sphere(b) and b.mask == GRAIN_MASK]
 
 
-def solid_volume(recipe: dict[str, Any]) -> float:
-    """Of the grains: mm^3; in 2D the discs' area times the layer, mm^3 too."""
-    radii = np.array([b.shape.radius for b in grains()])
+def solid_volume(recipe: dict[str, Any], balls: list[Any] | None = None) -> float:
+    """Of these balls, by default all grains: mm^3; in 2D the discs' area times the layer, mm^3 too."""
+    radii = np.array([b.shape.radius for b in (grains() if balls is None else balls)])
     if recipe["dimension"] == 2:
         return float(pi * (radii**2).sum() * recipe["layer_mm"])
     return float(4.0 / 3.0 * pi * (radii**3).sum())

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import csv
 import json
+import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -89,3 +91,19 @@ def test_penetrometer(program: Program, cache: Path):
 
     again = program("penetrometer", scene)
     assert again.status == 2 and "holds results" in again.err
+
+
+@pytest.mark.slow
+def test_interrupted_penetrometer(program: Program, cache: Path):
+    """Ctrl-C ends it with status 130; what was read so far is kept, and no mean is claimed."""
+    scene = program.scene(SOIL + PENETROMETER, "clay.toml")
+    running = program.start("penetrometer", scene, "--out", program.folder / "out")
+    end = time.monotonic() + 120
+    while not list(cache.glob("*.soil")):
+        assert time.monotonic() < end and running.poll() is None
+        time.sleep(0.05)
+    time.sleep(2)  # the probe moves, or is about to
+    running.send_signal(signal.SIGINT)
+    assert running.wait(60) == 130
+    assert (program.folder / "out" / "penetrometer.csv").read_text().startswith("seed,depth_mm")
+    assert not (program.folder / "out" / "penetrometer.json").exists()

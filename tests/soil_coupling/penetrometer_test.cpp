@@ -97,5 +97,19 @@ TEST(Penetrometer, AveragesTheTipOverItsSectionAndTheSeeds) {
   }
 }
 
+TEST(Penetrometer, AnInterruptionKeepsWhatWasRead) {
+  const SoilRecipe recipe = test::packed_grains();
+  const SoilPortFactory factory = [](const SoilRecipe&, const SoilStart&) {
+    return std::make_unique<FormulaSoil>(0.1);
+  };
+  int intervals = 0;
+  const PenetrometerResult result = penetrate(recipe, probe(), factory, [&](const std::string&) {
+    if (++intervals == 250) throw Interrupted();  // in the second seed: 200 intervals each
+  });
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_EQ(result.readings.size(), 250u);
+  EXPECT_THAT(result.Q_of_seed_MPa, testing::ElementsAre(testing::DoubleNear(0.1 / 0.8, 1e-12)));
+}
+
 }  // namespace
 }  // namespace rootsoil

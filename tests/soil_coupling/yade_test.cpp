@@ -300,6 +300,19 @@ TEST_F(Yade, APackedSampleIsAtRestUnderItsPressureAndKept) {
               AllOf(HasSubstr("not a soil sample of this version"), HasSubstr("2018.02b")));
 }
 
+TEST_F(Yade, AMovableStoneKeepsItsSizeAndPlaceInPacking) {
+  SoilRecipe r = test::packed_grains();
+  r.obstacles = {{.name = "stone", .shape = "stone", .position_mm = {3, 0, 0}, .radius_mm = 0.5, .movable = true}};
+  YadeSoil s = soil(r);
+  s.advance(push(0.3, 0.0));
+  const SoilSnapshot snapshot = s.snapshot();
+  const auto largest = std::max_element(snapshot.radius_mm.begin(), snapshot.radius_mm.end());
+  const std::size_t stone = static_cast<std::size_t>(largest - snapshot.radius_mm.begin());
+  EXPECT_NEAR(*largest, 0.5, 0.005);
+  EXPECT_NEAR(snapshot.position_mm[stone][0], 3.0, 0.05);
+  EXPECT_NEAR(snapshot.position_mm[stone][1], 0.0, 0.05);
+}
+
 TEST_F(Yade, TheDensityMakesTheSoilQuasiStatic) {
   SoilRecipe r = test::packed_grains();
   r.inertial_number_max = 0.02;
@@ -358,8 +371,8 @@ TEST_F(Yade, BallsInThreeDimensions) {
   EXPECT_LT(test::total(f.mean_N)[0], 0.0);
 }
 
-/// One seed of a small sample at I = 0.03; 6 to 9 was measured with wide samples, 10 to 25 % apart between seeds.
-TEST_F(Yade, ThePenetrometerMeetsSixToNineTimesThePressure) {
+/// One seed of a small sample at I = 0.03, where three larger ones gave 6.2 to 6.9 (docs/soil.md).
+TEST_F(Yade, ThePenetrometerMeetsSeveralTimesThePressure) {
   SoilRecipe r = test::packed_grains();
   r.inertial_number_max = 0.03;
   r.E_MPa = 250.0;
@@ -374,8 +387,8 @@ TEST_F(Yade, ThePenetrometerMeetsSixToNineTimesThePressure) {
     return std::make_unique<YadeSoil>(recipe, start, options_);
   };
   const PenetrometerResult result = penetrate(r, probe, factory);
-  EXPECT_GT(result.Q_MPa / r.confining_pressure_MPa, 6.0 * 0.75);
-  EXPECT_LT(result.Q_MPa / r.confining_pressure_MPa, 9.0 * 1.25);
+  EXPECT_GT(result.Q_MPa / r.confining_pressure_MPa, 4.0);
+  EXPECT_LT(result.Q_MPa / r.confining_pressure_MPa, 9.0);
   EXPECT_NEAR(result.inertial_number, 0.03, 1e-6);
   RecordProperty("Q_over_P", std::to_string(result.Q_MPa / r.confining_pressure_MPa));
   std::printf("Q/P = %.3f\n", result.Q_MPa / r.confining_pressure_MPa);

@@ -74,11 +74,18 @@ class Series:
         subprocess.run(command, check=True, stdin=subprocess.DEVNULL)
         return folder
 
-    def penetrometer(self, name: str, settings: Sequence[str]) -> dict:
-        """What `rootsoil penetrometer` found with these settings, its summary."""
+    def penetrometer(self, name: str, settings: Sequence[str]) -> Path:
+        """The folder of a finished `rootsoil penetrometer` with these settings; runs it where it is missing."""
         folder = self._claim(name, settings)
-        summary = folder / "penetrometer.json"
-        if not summary.is_file():
-            print(f"{name}: pushing into {folder}", flush=True)
-            subprocess.run(self._command("penetrometer", folder, settings), check=True, stdin=subprocess.DEVNULL)
-        return json.loads(summary.read_text(encoding="utf-8"))
+        if (folder / "penetrometer.json").is_file():
+            print(f"{name}: {folder} is finished", flush=True)
+            return folder
+        (folder / "penetrometer.csv").unlink(missing_ok=True)  # of an interrupted one
+        print(f"{name}: pushing into {folder}", flush=True)
+        subprocess.run(self._command("penetrometer", folder, settings), check=True, stdin=subprocess.DEVNULL)
+        return folder
+
+
+def resistance_MPa(folder: Path) -> float:
+    """Q of a finished penetrometer."""
+    return float(json.loads((folder / "penetrometer.json").read_text(encoding="utf-8"))["Q_MPa"])
