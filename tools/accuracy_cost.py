@@ -1,0 +1,324 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""What accuracy costs: small problems with known answers, computed in many ways, error against time.
+
+Writes OUT/accuracy_cost.csv, a row for each run and measure, after every run; rows that are there are not run again.
+A row's key is made of the command, the scene and the programs. Without --quick and --out the pictures and
+docs/accuracy_cost.md are made anew from it. The cost of a run is the processor time that it and its children used:
+a clock on the wall depends on what else the machine does.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import hashlib
+import json
+import math
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+from rootsoil_tools import work_precision
+from rootsoil_tools.problems import Choice, Problem, all_problems
+from rootsoil_tools.runs import RunError
+
+PROJECT = Path(__file__).resolve().parent.parent
+CPU_LIMIT_S = 30  # of one run
+STATUS_OF_EXIT = {2: "refused", 3: "unphysical", 4: "soil failed", -24: "too long"}  # 24: SIGXCPU
+
+PAPER = Choice(
+    "paper's scheme",
+    {
+        "numerics.kernel": "isotropic",
+        "numerics.H_bar": 2.0,
+        "numerics.gradient": "linear",
+        "numerics.stepper": "predictor_corrector",
+        "numerics.inertia": "scalar",
+        "numerics.inertia_compensation": False,
+    },
+    non_affine=False,
+    law_is_pressure_deviator=True,
+)
+DEFAULT = Choice("default")
+METHODS = [
+    Choice("isotropic kernel, H_bar 2", {"numerics.kernel": "isotropic", "numerics.H_bar": 2.0}),
+    Choice("isotropic kernel, H_bar 4.5", {"numerics.kernel": "isotropic", "numerics.H_bar": 4.5}),
+    Choice("isotropic kernel, H_bar 8", {"numerics.kernel": "isotropic", "numerics.H_bar": 8.0}),
+    Choice("eta 1.2", {"numerics.eta": 1.2}),
+    Choice("eta 2", {"numerics.eta": 2.0}),
+    Choice("plain gradient", {"numerics.gradient": "plain"}),
+    Choice("linear gradient", {"numerics.gradient": "linear"}),
+    Choice("quadratic gradient", {"numerics.gradient": "quadratic"}),
+    Choice("scalar inertia", {"numerics.inertia": "scalar"}),
+    Choice("no compensation of inertia", {"numerics.inertia_compensation": False}),
+    Choice("window 5", {"numerics.window_steps": 5}),
+    Choice("window 80", {"numerics.window_steps": 80}),
+    Choice("no non-affine control", non_affine=False),
+    Choice("predictor-corrector", {"numerics.stepper": "predictor_corrector"}),
+    Choice("law pressure_deviator", law_is_pressure_deviator=True),
+    PAPER,
+]
+PRESETS = [Choice(f"preset {name}", {"numerics.accuracy": name}) for name in ("fast", "balanced", "reference")]
+STEPS = [Choice("step", step_factor=factor) for factor in (8.0, 4.0, 2.0, 1.0, 0.5)]
+
+
+@dataclass(frozen=True)
+class Task:
+    """One run."""
+
+    problem: Problem
+    choice: Choice
+    across: int
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measure of one run. `error` is empty where there is none (yet)."""
+
+    key: str
+    problem: str
+    choice: str
+    across: int
+    step_factor: float
+    measure: str
+    status: str
+    error: float
+    inertia_error: float
+    cpu_s: float
+    wall_s: float
+    cells: float
+    steps: float
+    cell_steps: float
+    hours: float
+    program: str
+    values: str
+    remark: str
+
+
+def full_grid(problems: list[Problem]) -> list[Task]:
+    """The default first, so that a study that is stopped has it."""
+    tasks = []
+    grown = [p for p in problems if p.name in ("growth", "division")]
+    moving = grown + [p for p in problems if p.name == "path"]
+    dear = [p for p in problems if p.name == "path"]
+    for across in (6, 8, 10, 12, 16):
+        tasks += [Task(p, DEFAULT, across) for p in problems if p not in dear or across <= 12]
+    tasks += [Task(p, choice, 8) for choice in PRESETS for p in problems if p not in dear]
+    tasks += [Task(p, choice, 8) for choice in STEPS for p in grown]
+    tasks += [Task(p, choice, 6) for choice in STEPS for p in dear]
+    for across in (6, 10):
+        for choice in METHODS:
+            concerned = moving if choice.name == "no compensation of inertia" else problems
+            tasks += [Task(p, choice, across) for p in concerned if p not in dear or across == 6]
+    return tasks
+
+
+def quick_grid(problems: list[Problem]) -> list[Task]:
+    """What continuous integration runs."""
+    cheap = [p for p in problems if p.name != "path"]
+    tasks = [Task(p, DEFAULT, across) for across in (6, 10) for p in cheap if across == 6 or p.name != "division"]
+    tasks += [Task(p, choice, 6) for choice in PRESETS if choice.name != "preset balanced" for p in cheap]
+    tasks += [Task(p, PAPER, 6) for p in cheap]
+    return tasks
+
+
+# ---- running --------------------------------------------------------------------------------------
+
+
+def programs_of(folder: Path) -> str:
+    """Version and digest of the programs in the folder."""
+    digest = hashlib.sha256()
+    for name in ("rootsoil", "bending_problem"):
+        digest.update((folder / name).read_bytes())
+    version = subprocess.run([folder / "rootsoil", "version"], capture_output=True, text=True, check=True).stdout
+    return f"{version.strip()} {digest.hexdigest()[:12]}"
+
+
+def key_of(command: list[str], folder: Path, program: str) -> str:
+    """Digest of all that a run depends on: what it is called with, the files that it finds, the programs."""
+    parts = [program, *command[1:], *(path.read_text() for path in sorted(folder.iterdir()))]
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
+
+
+def timed(command: list[str], folder: Path) -> tuple[int, float, float]:
+    """Exit status, processor time (s) of the command and its children, wall time (s). Output goes to files."""
+
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT_S, CPU_LIMIT_S + 5))
+
+    start = time.monotonic()
+    with (folder / "out").open("wb") as out, (folder / "err").open("wb") as err:
+        process = subprocess.Popen(  # noqa: PLW1509
+            command,
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=err,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+            preexec_fn=limit,
+        )
+        _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_utime + usage.ru_stime, time.monotonic() - start
+
+
+def run_task(task: Task, programs: Path, program: str, known: dict[str, list[Row]]) -> list[Row]:
+    """The rows of a run: those that are known, or new ones."""
+    with tempfile.TemporaryDirectory(prefix="accuracy_") as name:
+        folder = Path(name)
+        command = task.problem.prepare(programs, folder, task.across, task.choice)
+        key = key_of(command, folder, program)
+        if key in known:
+            return known[key]
+        exit_status, cpu_s, wall_s = timed(command, folder)
+        status, remark, values, cost = STATUS_OF_EXIT.get(exit_status, f"exit {exit_status}"), "", {}, None
+        if exit_status == 0:
+            try:
+                values, cost = task.problem.read(folder)
+                status = "done"
+            except (ValueError, RunError) as error:
+                status, remark = "not measured", str(error)
+        else:
+            lines = [line.strip() for line in (folder / "err").read_text(errors="replace").splitlines()]
+            remark = next((line for line in lines if line), "")
+        nan = math.nan
+        factor = nan if task.choice.step_factor is None else task.choice.step_factor
+        return [
+            Row(
+                key=key,
+                problem=task.problem.name,
+                choice=task.choice.name,
+                across=task.across,
+                step_factor=factor,
+                measure=m.name,
+                status=status,
+                error=nan,
+                inertia_error=cost.inertia_error if cost else nan,
+                cpu_s=cpu_s,
+                wall_s=wall_s,
+                cells=cost.cells if cost else nan,
+                steps=cost.steps if cost else nan,
+                cell_steps=cost.cells * cost.steps if cost else nan,
+                hours=cost.hours if cost else nan,
+                program=program,
+                values=" ".join(f"{v:.8g}" for v in values.get(m.name, [])),
+                remark=remark,
+            )
+            for m in task.problem.measures
+        ]
+
+
+# ---- the table ------------------------------------------------------------------------------------
+
+
+def write_rows(rows: list[Row], path: Path) -> None:
+    """Replaces the file as a whole."""
+    partial = path.with_suffix(".partial")
+    with partial.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([f.name for f in fields(Row)])
+        for row in rows:
+            values = [getattr(row, f.name) for f in fields(Row)]
+            writer.writerow(["" if v != v else f"{v:.6g}" if isinstance(v, float) else v for v in values])
+    partial.replace(path)
+
+
+def read_rows(path: Path) -> list[Row]:
+    """The rows of a file; none where there is no file."""
+    if not path.is_file():
+        return []
+    types: dict[str, Callable] = {"float": lambda text: float(text) if text else math.nan, "int": int, "str": str}
+    with path.open(newline="", encoding="utf-8") as file:
+        return [Row(**{f.name: types[str(f.type)](row[f.name]) for f in fields(Row)}) for row in csv.DictReader(file)]
+
+
+def finest(rows: list[Row], row: Row) -> Row | None:
+    """The run that the row is compared with, where there is no closed form: the default with most cells and, there,
+    the smallest step."""
+    same = [r for r in rows if (r.problem, r.measure, r.status) == (row.problem, row.measure, "done")]
+    same = [r for r in same if r.choice == DEFAULT.name]
+    return max(same, key=lambda r: r.cell_steps, default=None)
+
+
+def with_errors(rows: list[Row], problems: list[Problem]) -> list[Row]:
+    """Root mean square of the values, or of their differences to those of the finest run over the measure's scale."""
+    by_name = {p.name: p for p in problems}
+    found = []
+    for row in rows:
+        error = math.nan
+        if row.status == "done" and row.problem in by_name:
+            values = np.array(row.values.split(), dtype=float)
+            scale = by_name[row.problem].measure(row.measure).scale
+            if scale is None:
+                error = float(np.sqrt(np.mean(values**2)))
+            else:
+                reference = finest(rows, row)
+                if reference is not None and reference.key != row.key:
+                    exact = np.array(reference.values.split(), dtype=float)
+                    error = float(np.sqrt(np.mean((values - exact) ** 2))) / scale
+        found.append(Row(**{**{f.name: getattr(row, f.name) for f in fields(Row)}, "error": error}))
+    return found
+
+
+def main() -> int:
+    """0; 1 where a program is missing."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="a small grid, for continuous integration")
+    parser.add_argument("--out", type=Path, help="folder of the results; otherwise docs, with --quick runs/accuracy_quick")
+    parser.add_argument("--programs", type=Path, default=PROJECT / "build" / "release", help="folder of the programs")
+    parser.add_argument("--draw-only", action="store_true", help="runs nothing: pictures and page from the rows there are")
+    parser.add_argument("--only", nargs="*", help="names of problems; otherwise all")
+    arguments = parser.parse_args()
+    folder = arguments.out or (PROJECT / "runs" / "accuracy_quick" if arguments.quick else PROJECT / "docs")
+    folder.mkdir(parents=True, exist_ok=True)
+    table = folder / "accuracy_cost.csv"
+    problems = all_problems()
+    chosen = [p for p in problems if not arguments.only or p.name in arguments.only]
+    rows = read_rows(table)
+    if not arguments.draw_only:
+        programs = arguments.programs.resolve()
+        try:
+            program = programs_of(programs)
+        except OSError as error:
+            print(f"accuracy_cost: {error}; build first (tools/build.sh), or give --programs", file=sys.stderr)
+            return 1
+        known: dict[str, list[Row]] = {}
+        for row in rows:
+            known.setdefault(row.key, []).append(row)
+        tasks = quick_grid(chosen) if arguments.quick else full_grid(chosen)
+        for number, task in enumerate(tasks, 1):
+            new = run_task(task, programs, program, known)
+            if new[0].key in known:
+                continue
+            known[new[0].key] = new
+            # a row of an older program or grid makes room for that of this one
+            place = lambda r: (r.problem, r.choice, r.across, str(r.step_factor))  # noqa: E731
+            rows = [r for r in rows if place(r) != place(new[0])] + new
+            rows = with_errors(rows, problems)
+            write_rows(rows, table)
+            told = ", ".join(f"{r.measure} {r.error:.2e}" for r in rows if r.key == new[0].key and r.error == r.error)
+            step = "" if task.choice.step_factor is None else f" x {task.choice.step_factor:g}"
+            print(
+                f"{number}/{len(tasks)} {task.problem.name}, {task.choice.name}{step}, {task.across} across: {new[0].status}, "
+                f"{new[0].cpu_s:.2f} s; {told or new[0].remark}",
+                flush=True,
+            )
+        rows = with_errors(rows, problems)
+        write_rows(rows, table)
+    work_precision.draw(rows, problems, folder / "images" if folder == PROJECT / "docs" else folder)
+    if folder == PROJECT / "docs":
+        (folder / "accuracy_cost.md").write_text(work_precision.page(rows, problems), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
