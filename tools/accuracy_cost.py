@@ -11,9 +11,7 @@ a clock on the wall depends on what else the machine does.
 from __future__ import annotations
 
 import argparse
-import csv
 import hashlib
-import json
 import math
 import os
 import resource
@@ -21,18 +19,19 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from rootsoil_tools import work_precision
+from rootsoil_tools import measure, problems, runs, theory, work_precision
+from rootsoil_tools.accuracy_table import DEFAULT_NAME, FINEST_NAME, Row, read_rows, with_errors, write_rows
 from rootsoil_tools.problems import Choice, Problem, all_problems
 from rootsoil_tools.runs import RunError
 
 PROJECT = Path(__file__).resolve().parent.parent
-CPU_LIMIT_S = 30  # of one run
+CPU_LIMIT_S = 60  # of one run
+BOUNDS = PROJECT / "tools" / "accuracy_bounds.toml"
+BOUND_FACTOR = 1.5
+BOUND_FLOOR = 3e-4  # below it errors are rounding and settling, which another compiler changes
 STATUS_OF_EXIT = {2: "refused", 3: "unphysical", 4: "soil failed", -24: "too long"}  # 24: SIGXCPU
 
 PAPER = Choice(
@@ -44,11 +43,11 @@ PAPER = Choice(
         "numerics.stepper": "predictor_corrector",
         "numerics.inertia": "scalar",
         "numerics.inertia_compensation": False,
+        "tissue.law": "pressure_deviator",
     },
     non_affine=False,
-    law_is_pressure_deviator=True,
 )
-DEFAULT = Choice("default")
+DEFAULT = Choice(DEFAULT_NAME)
 METHODS = [
     Choice("isotropic kernel, H_bar 2", {"numerics.kernel": "isotropic", "numerics.H_bar": 2.0}),
     Choice("isotropic kernel, H_bar 4.5", {"numerics.kernel": "isotropic", "numerics.H_bar": 4.5}),
@@ -64,11 +63,35 @@ METHODS = [
     Choice("window 80", {"numerics.window_steps": 80}),
     Choice("no non-affine control", non_affine=False),
     Choice("predictor-corrector", {"numerics.stepper": "predictor_corrector"}),
-    Choice("law pressure_deviator", law_is_pressure_deviator=True),
+    Choice("law pressure_deviator", {"tissue.law": "pressure_deviator"}),
     PAPER,
 ]
 PRESETS = [Choice(f"preset {name}", {"numerics.accuracy": name}) for name in ("fast", "balanced", "reference")]
-STEPS = [Choice("step", step_factor=factor) for factor in (8.0, 4.0, 2.0, 1.0, 0.5)]
+STEPS = [Choice("step", level=factor, step_factor=factor) for factor in (8.0, 4.0, 2.0, 1.0, 0.5)]
+IN_SOIL = {  # curve: key, levels by problem
+    "interval": {
+        "hertz": ("penetrometer.interval_h", (0.008, 0.002, 0.001)),
+        "penetrometer": ("penetrometer.interval_h", (0.048, 0.006, 0.003)),
+        "soil": ("soil.contact.interval_h", (0.016, 0.008, 0.002)),
+    },
+    "inertial number": {
+        name: ("soil.inertial_number_max", (0.1, 0.03, 0.003)) for name in ("hertz", "penetrometer", "soil")
+    },
+    "grain stiffness": {
+        "penetrometer": ("soil.E_MPa", (62.5, 125.0, 500.0)),
+        "soil": ("soil.E_MPa", (25.0, 50.0, 200.0)),
+    },
+    "marker spacing": {"soil": ("soil.contact.marker_spacing", (1.0, 0.3))},
+}
+FINEST_IN_SOIL = {
+    "penetrometer": {"penetrometer.interval_h": 0.003, "soil.inertial_number_max": 0.003, "soil.E_MPa": 500.0},
+    "soil": {
+        "soil.contact.interval_h": 0.002,
+        "soil.inertial_number_max": 0.003,
+        "soil.E_MPa": 200.0,
+        "soil.contact.marker_spacing": 0.3,
+    },
+}
 
 
 @dataclass(frozen=True)
@@ -80,51 +103,43 @@ class Task:
     across: int
 
 
-@dataclass(frozen=True)
-class Row:
-    """One measure of one run. `error` is empty where there is none (yet)."""
-
-    key: str
-    problem: str
-    choice: str
-    across: int
-    step_factor: float
-    measure: str
-    status: str
-    error: float
-    inertia_error: float
-    cpu_s: float
-    wall_s: float
-    cells: float
-    steps: float
-    cell_steps: float
-    hours: float
-    program: str
-    values: str
-    remark: str
-
-
-def full_grid(problems: list[Problem]) -> list[Task]:
+def full_grid(chosen: list[Problem]) -> list[Task]:
     """The default first, so that a study that is stopped has it."""
-    tasks = []
-    grown = [p for p in problems if p.name in ("growth", "division")]
-    moving = grown + [p for p in problems if p.name == "path"]
-    dear = [p for p in problems if p.name == "path"]
-    for across in (6, 8, 10, 12, 16):
-        tasks += [Task(p, DEFAULT, across) for p in problems if p not in dear or across <= 12]
-    tasks += [Task(p, choice, 8) for choice in PRESETS for p in problems if p not in dear]
+    tasks: list[Task] = []
+    with_soil = [p for p in chosen if p.soil]
+    plain = [p for p in chosen if not p.soil]
+    grown = [p for p in plain if p.name in ("growth", "division")]
+    moving = grown + [p for p in plain if p.name == "path"]
+    dear = [p for p in plain if p.name == "path"]
+    for across in (4, 6, 8, 10, 12, 16):
+        tasks += [Task(p, DEFAULT, across) for p in plain if p not in dear or 6 <= across <= 12]
+    tasks += [Task(p, choice, 8) for choice in PRESETS for p in plain if p not in dear]
     tasks += [Task(p, choice, 8) for choice in STEPS for p in grown]
     tasks += [Task(p, choice, 6) for choice in STEPS for p in dear]
     for across in (6, 10):
         for choice in METHODS:
-            concerned = moving if choice.name == "no compensation of inertia" else problems
+            concerned = moving if choice.name == "no compensation of inertia" else plain
             tasks += [Task(p, choice, across) for p in concerned if p not in dear or across == 6]
+    return tasks + soil_grid(with_soil)
+
+
+def soil_grid(chosen: list[Problem]) -> list[Task]:
+    """One choice at a time."""
+    tasks = []
+    for p in chosen:
+        if p.name in FINEST_IN_SOIL:
+            tasks.append(Task(p, Choice(FINEST_NAME, FINEST_IN_SOIL[p.name]), 6))
+        tasks.append(Task(p, DEFAULT, 6))
+        for name, by_problem in IN_SOIL.items():
+            if p.name in by_problem:
+                key, levels = by_problem[p.name]
+                tasks += [Task(p, Choice(name, {key: level}, level), 6) for level in levels]
     return tasks
 
 
-def quick_grid(problems: list[Problem]) -> list[Task]:
+def quick_grid(chosen: list[Problem]) -> list[Task]:
     """What continuous integration runs."""
-    cheap = [p for p in problems if p.name != "path"]
+    cheap = [p for p in chosen if p.name != "path" and not p.soil]
     tasks = [Task(p, DEFAULT, across) for across in (6, 10) for p in cheap if across == 6 or p.name != "division"]
     tasks += [Task(p, choice, 6) for choice in PRESETS if choice.name != "preset balanced" for p in cheap]
     tasks += [Task(p, PAPER, 6) for p in cheap]
@@ -134,11 +149,14 @@ def quick_grid(problems: list[Problem]) -> list[Task]:
 # ---- running --------------------------------------------------------------------------------------
 
 
+MEASURING = [Path(module.__file__) for module in (measure, problems, runs, theory)]
+
+
 def programs_of(folder: Path) -> str:
-    """Version and digest of the programs in the folder."""
+    """Version of the program, and a digest of the programs in the folder and of what measures here."""
     digest = hashlib.sha256()
-    for name in ("rootsoil", "bending_problem"):
-        digest.update((folder / name).read_bytes())
+    for path in (folder / "rootsoil", folder / "bending_problem", *MEASURING):
+        digest.update(path.read_bytes())
     version = subprocess.run([folder / "rootsoil", "version"], capture_output=True, text=True, check=True).stdout
     return f"{version.strip()} {digest.hexdigest()[:12]}"
 
@@ -163,7 +181,7 @@ def timed(command: list[str], folder: Path) -> tuple[int, float, float]:
             stdin=subprocess.DEVNULL,
             stdout=out,
             stderr=err,
-            env={**os.environ, "OMP_NUM_THREADS": "1"},
+            env={**os.environ, "OMP_NUM_THREADS": "1", "ROOTSOIL_CACHE": str(folder / "cache")},
             preexec_fn=limit,
         )
         _, status, usage = os.wait4(process.pid, 0)
@@ -191,14 +209,13 @@ def run_task(task: Task, programs: Path, program: str, known: dict[str, list[Row
             lines = [line.strip() for line in (folder / "err").read_text(errors="replace").splitlines()]
             remark = next((line for line in lines if line), "")
         nan = math.nan
-        factor = nan if task.choice.step_factor is None else task.choice.step_factor
         return [
             Row(
                 key=key,
                 problem=task.problem.name,
                 choice=task.choice.name,
                 across=task.across,
-                step_factor=factor,
+                level=task.choice.level,
                 measure=m.name,
                 status=status,
                 error=nan,
@@ -217,56 +234,28 @@ def run_task(task: Task, programs: Path, program: str, known: dict[str, list[Row
         ]
 
 
-# ---- the table ------------------------------------------------------------------------------------
+def measure_id(row: Row) -> str:
+    """What tells an error of the quick grid from the others."""
+    return f"{row.problem}, {row.choice}, {row.across} across, {row.measure}"
 
 
-def write_rows(rows: list[Row], path: Path) -> None:
-    """Replaces the file as a whole."""
-    partial = path.with_suffix(".partial")
-    with partial.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([f.name for f in fields(Row)])
-        for row in rows:
-            values = [getattr(row, f.name) for f in fields(Row)]
-            writer.writerow(["" if v != v else f"{v:.6g}" if isinstance(v, float) else v for v in values])
-    partial.replace(path)
-
-
-def read_rows(path: Path) -> list[Row]:
-    """The rows of a file; none where there is no file."""
-    if not path.is_file():
-        return []
-    types: dict[str, Callable] = {"float": lambda text: float(text) if text else math.nan, "int": int, "str": str}
-    with path.open(newline="", encoding="utf-8") as file:
-        return [Row(**{f.name: types[str(f.type)](row[f.name]) for f in fields(Row)}) for row in csv.DictReader(file)]
-
-
-def finest(rows: list[Row], row: Row) -> Row | None:
-    """The run that the row is compared with, where there is no closed form: the default with most cells and, there,
-    the smallest step."""
-    same = [r for r in rows if (r.problem, r.measure, r.status) == (row.problem, row.measure, "done")]
-    same = [r for r in same if r.choice == DEFAULT.name]
-    return max(same, key=lambda r: r.cell_steps, default=None)
-
-
-def with_errors(rows: list[Row], problems: list[Problem]) -> list[Row]:
-    """Root mean square of the values, or of their differences to those of the finest run over the measure's scale."""
-    by_name = {p.name: p for p in problems}
-    found = []
+def bounds_text(rows: list[Row]) -> str:
+    """tools/accuracy_bounds.toml with the errors of these rows, and why a run has none."""
+    lines = [
+        "# SPDX-License-Identifier: MIT",
+        "# Errors of tools/accuracy_cost.py --quick; tests/tools/test_accuracy_cost.py fails when one is larger than `factor`",
+        "# times what stands here, and larger than `floor`. Written by tools/accuracy_cost.py --quick --record-bounds.",
+        f"factor = {BOUND_FACTOR}",
+        f"floor = {BOUND_FLOOR}",
+        "",
+        "[errors]",
+    ]
     for row in rows:
-        error = math.nan
-        if row.status == "done" and row.problem in by_name:
-            values = np.array(row.values.split(), dtype=float)
-            scale = by_name[row.problem].measure(row.measure).scale
-            if scale is None:
-                error = float(np.sqrt(np.mean(values**2)))
-            else:
-                reference = finest(rows, row)
-                if reference is not None and reference.key != row.key:
-                    exact = np.array(reference.values.split(), dtype=float)
-                    error = float(np.sqrt(np.mean((values - exact) ** 2))) / scale
-        found.append(Row(**{**{f.name: getattr(row, f.name) for f in fields(Row)}, "error": error}))
-    return found
+        if row.status != "done":
+            lines.append(f'"{measure_id(row)}" = "{row.status}"')
+        elif math.isfinite(row.error):
+            lines.append(f'"{measure_id(row)}" = {row.error:.3g}')
+    return "\n".join(lines) + "\n"
 
 
 def main() -> int:
@@ -276,13 +265,14 @@ def main() -> int:
     parser.add_argument("--out", type=Path, help="folder of the results; otherwise docs, with --quick runs/accuracy_quick")
     parser.add_argument("--programs", type=Path, default=PROJECT / "build" / "release", help="folder of the programs")
     parser.add_argument("--draw-only", action="store_true", help="runs nothing: pictures and page from the rows there are")
+    parser.add_argument("--record-bounds", action="store_true", help=f"with --quick: write {BOUNDS.relative_to(PROJECT)}")
     parser.add_argument("--only", nargs="*", help="names of problems; otherwise all")
     arguments = parser.parse_args()
     folder = arguments.out or (PROJECT / "runs" / "accuracy_quick" if arguments.quick else PROJECT / "docs")
     folder.mkdir(parents=True, exist_ok=True)
     table = folder / "accuracy_cost.csv"
-    problems = all_problems()
-    chosen = [p for p in problems if not arguments.only or p.name in arguments.only]
+    known_problems = all_problems()
+    chosen = [p for p in known_problems if not arguments.only or p.name in arguments.only]
     rows = read_rows(table)
     if not arguments.draw_only:
         programs = arguments.programs.resolve()
@@ -301,22 +291,24 @@ def main() -> int:
                 continue
             known[new[0].key] = new
             # a row of an older program or grid makes room for that of this one
-            place = lambda r: (r.problem, r.choice, r.across, str(r.step_factor))  # noqa: E731
+            place = lambda r: (r.problem, r.choice, r.across, str(r.level))  # noqa: E731
             rows = [r for r in rows if place(r) != place(new[0])] + new
-            rows = with_errors(rows, problems)
+            rows = with_errors(rows, known_problems)
             write_rows(rows, table)
             told = ", ".join(f"{r.measure} {r.error:.2e}" for r in rows if r.key == new[0].key and r.error == r.error)
-            step = "" if task.choice.step_factor is None else f" x {task.choice.step_factor:g}"
+            step = "" if math.isnan(task.choice.level) else f" {task.choice.level:g}"
             print(
                 f"{number}/{len(tasks)} {task.problem.name}, {task.choice.name}{step}, {task.across} across: {new[0].status}, "
                 f"{new[0].cpu_s:.2f} s; {told or new[0].remark}",
                 flush=True,
             )
-        rows = with_errors(rows, problems)
+        rows = with_errors(rows, known_problems)
         write_rows(rows, table)
-    work_precision.draw(rows, problems, folder / "images" if folder == PROJECT / "docs" else folder)
+    if arguments.quick and arguments.record_bounds:
+        BOUNDS.write_text(bounds_text(rows), encoding="utf-8")
+    work_precision.draw(rows, known_problems, folder / "images" if folder == PROJECT / "docs" else folder)
     if folder == PROJECT / "docs":
-        (folder / "accuracy_cost.md").write_text(work_precision.page(rows, problems), encoding="utf-8")
+        (folder / "accuracy_cost.md").write_text(work_precision.page(rows, known_problems), encoding="utf-8")
     return 0
 
 

@@ -11,13 +11,17 @@ struct Preset {
   double eta;
   int window_steps;
   const char* gradient;
-  double discretisation_error;
+  StepRule step;
+  PresetRecord measured;  // docs/accuracy_cost.csv, "preset ..." of division; tests/tools/test_accuracy_cost.py compares
 };
 
+// Finer windows, other eta and the quadratic gradient everywhere cost more than the step for the same gain, or lose in
+// bending (docs/accuracy_cost.md): presets differ in the step. At 0.04 cells a step the 50 h main job flutters
+// (docs/decisions/0003): its tip leaves the axis as exp(0.5 t).
 constexpr Preset presets[] = {
-    {"fast", 1.5, 20, "quadratic_at_surface", 0.006},
-    {"balanced", 1.5, 20, "quadratic_at_surface", 0.006},
-    {"reference", 1.5, 20, "quadratic_at_surface", 0.006},
+    {"fast", 1.5, 20, "quadratic_at_surface", {0.02, 1e-3}, {0.006, 0.01, 0.3}},
+    {"balanced", 1.5, 20, "quadratic_at_surface", {0.01, 1e-3}, {0.006, 0.001, 0.8}},
+    {"reference", 1.5, 20, "quadratic_at_surface", {0.005, 1e-3}, {0.006, 0.0001, 1.6}},
 };
 
 const Preset& find_preset(std::string_view accuracy) {
@@ -45,6 +49,8 @@ NumericsSection preset(std::string_view accuracy) {
   return numerics;
 }
 
-double discretisation_error(std::string_view accuracy) { return find_preset(accuracy).discretisation_error; }
+StepRule step_rule(std::string_view accuracy) { return find_preset(accuracy).step; }
+
+PresetRecord preset_record(std::string_view accuracy) { return find_preset(accuracy).measured; }
 
 }  // namespace rootsoil

@@ -8,6 +8,7 @@ strain of 9e-4 would show an error of 0.05 % that is none.
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import tomllib
@@ -25,23 +26,20 @@ NON_AFFINE = "\n[non_affine_control]\n"
 
 @dataclass(frozen=True)
 class Choice:
-    """One way to compute. `keys` are those of the scene, `step_factor` multiplies the step of preset balanced."""
+    """One way to compute. `keys` are those of the scene. Choices of one name are a curve; `level` tells its points
+    apart. `step_factor` multiplies the step of preset balanced."""
 
     name: str
     keys: dict[str, object] = field(default_factory=dict)
+    level: float = math.nan
     step_factor: float | None = None
     non_affine: bool = True
-    law_is_pressure_deviator: bool = False
-
-    def overrides(self) -> dict[str, object]:
-        """section.key: value, for --set."""
-        law = {"tissue.law": "pressure_deviator"} if self.law_is_pressure_deviator else {}
-        return {**self.keys, **law}
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What a run did: cells (mean), steps, simulated hours, its own inertia error (share of p; NaN where none)."""
+    """What a run did: cells (mean), steps, simulated hours, its own inertia error (share of p, mean over the second half;
+    NaN where none)."""
 
     cells: float
     steps: float
@@ -51,11 +49,12 @@ class Cost:
 
 @dataclass(frozen=True)
 class Measure:
-    """One number to be compared. `scale` divides values that are compared with the finest run; None: they are
-    relative errors against a closed form already."""
+    """One number to be compared. Its values are relative errors against a closed form already, or are to be compared
+    with those of the finest run, divided by `scale` or, where that is None, by the finest run's own."""
 
     name: str
     meaning: str
+    finest: bool = False
     scale: float | None = None
 
 
@@ -97,7 +96,7 @@ def scene_problem(
     def prepare(programs: Path, folder: Path, across: int, choice: Choice) -> list[str]:
         text = scene(across) + (NON_AFFINE if choice.non_affine else "")
         (folder / "scene.toml").write_text(text, encoding="utf-8")
-        keys = choice.overrides()
+        keys = dict(choice.keys)
         if choice.step_factor is not None:
             keys["numerics.step_h"] = choice.step_factor * step_h(across)
         sets = [part for key, value in keys.items() for part in ("--set", f"{key}={text_of(value)}")]
@@ -107,7 +106,8 @@ def scene_problem(
     def read_folder(folder: Path) -> tuple[dict[str, list[float]], Cost]:
         run, summary = Run(folder / "run"), read_summary(folder / "run")
         cells = (summary["cells_start"] + summary["cells_end"]) / 2.0
-        cost = Cost(cells, summary["steps"], summary["time_h"], summary["inertia_error"])
+        inertia = run.history()["inertia_error"]
+        cost = Cost(cells, summary["steps"], summary["time_h"], float(inertia[len(inertia) // 2 :].mean()))
         return read(run), cost
 
     return Problem(name, title, measures, prepare, read_folder, soil)
@@ -160,7 +160,7 @@ def strain_problem(name: str, title: str, anisotropy: str = "", root: str = "", 
         title,
         (
             Measure("axial", "axial strain, rms of bins, against Eq. 8"),
-            Measure("radial", radial, None if exact_radial else 1.0),
+            Measure("radial", radial, not exact_radial, 1.0),
         ),
         scene,
         lambda across: 8.0 / max(2000.0, 25.0 * length * across / diameter),
@@ -203,22 +203,33 @@ x_d_mm = 0.12
 constant_beyond_mm = 0.5
 """
 GROWTH_DIAMETER_MM = 0.08
-GROWTH_SETTLED_H = 0.4
 
 
-def growth_errors(run: Run) -> dict[str, list[float]]:
-    """Tip's way after it has settled, and the axial rate of cells where it is over a tenth of the peak."""
+def last_window_h(run: Run) -> float:
+    """Duration of the window that ended with a frame; frames end windows."""
+    numerics = run.scene["numerics"]
+    steps = round(run.scene["output"]["every_h"] / numerics["step_h"])
+    return numerics["step_h"] * (steps % numerics["window_steps"] or numerics["window_steps"])
+
+
+def growth_errors(run: Run, from_h: float) -> dict[str, list[float]]:
+    """Tip's way from a time on, and the axial rate of cells where it is over a tenth of the peak.
+
+    A frame holds the distance from the tip at its last window's start, and the rate of that window."""
     model = theory.model_of(run.scene)
     history = run.history()
     time, length = history["time_h"], history["length_mm"]
-    settled = time > GROWTH_SETTLED_H - 1e-9
+    settled = time > from_h - 1e-9
     t, measured = time[settled], length[settled]
     way = theory.cumulative_integral(t, np.array([model.tip_speed(x) for x in measured]))[-1]
-    peak = float(model.axial_rate(model.grid(float(length[-1]))).max())
+    fine = model.grid(2.0 * float(length[-1]))
+    flow = model.velocity(fine)
+    peak = float(model.axial_rate(fine).max())
     errors = []
     for index in np.flatnonzero(settled):
         frame = run.frame(int(index))
-        exact = model.axial_rate(frame["distance_to_tip"])
+        start = frame["distance_to_tip"]
+        exact = model.axial_rate(start + 0.5 * last_window_h(run) * np.interp(start, fine, flow))
         chosen = (exact > 0.1 * peak) & (frame["clamped"] == 0)
         errors.append(frame["axial_strain_rate"][chosen] / exact[chosen] - 1.0)
     return {
@@ -249,8 +260,8 @@ def divided_lengths(
     return s, length
 
 
-def division_errors(run: Run) -> dict[str, list[float]]:
-    """growth_errors, and the profile of cell length: means over bins of 0.2 mm against every cell of the first frame,
+def division_errors(run: Run, from_h: float) -> dict[str, list[float]]:
+    """growth_errors from a time on, and the profile of cell length: means over bins of 0.2 mm against every cell of the first frame,
     carried, stretched and divided by the closed form."""
     model = theory.model_of(run.scene)
     keys = run.scene["division"]
@@ -266,7 +277,7 @@ def division_errors(run: Run) -> dict[str, list[float]]:
     edges = measure.edges_of(1.0, 0.2)
     exact = measure.binned(s, length, edges).mean
     found = measure.binned(last["distance_to_tip"], last.axial_lengths(2), edges).mean
-    return {**growth_errors(run), "cell length": list(found / exact - 1.0)}
+    return {**growth_errors(run, from_h), "cell length": list(found / exact - 1.0)}
 
 
 def growth_scene(hours: float, across: int) -> str:
@@ -349,7 +360,7 @@ def thrust_errors(run: Run) -> dict[str, list[float]]:
 PATH = """\
 [scene]
 name = "path"
-duration_h = 1.0
+duration_h = 0.75
 [root]
 length_mm = 1.0
 radius_mm = 0.06
@@ -386,11 +397,11 @@ PATH_DIAMETER_MM = 0.12
 
 def path_step_h(across: int) -> float:
     """Small: the contact is to be quasi-static, not an impact."""
-    return 3e-4 / across
+    return 1.5e-4 / across
 
 
 def path_points(run: Run) -> dict[str, list[float]]:
-    """Where the tip is at 0.5, 0.75 and 1 h, in diameters."""
+    """Where the tip is at 0.25, 0.5 and 0.75 h, in diameters."""
     history = run.history()
     return {"path": list(np.concatenate([history[f"tip_{a}_mm"][-3:] for a in "xy"]) / PATH_DIAMETER_MM)}
 
@@ -402,7 +413,7 @@ def beam_problem(name: str, title: str, meaning: str) -> Problem:
     """A beam of the bending tests: build/release/bending_problem."""
 
     def prepare(programs: Path, folder: Path, across: int, choice: Choice) -> list[str]:
-        keys = choice.overrides()
+        keys = dict(choice.keys)
         if choice.step_factor is not None:
             keys["numerics.step_h"] = 1e-3 * choice.step_factor
         if not choice.non_affine:
@@ -418,6 +429,184 @@ def beam_problem(name: str, title: str, meaning: str) -> Problem:
         return {"stiffness": [found["ratio"] - 1.0]}, cost
 
     return Problem(name, title, (Measure("stiffness", meaning),), prepare, read)
+
+
+# ---- soil -----------------------------------------------------------------------------------------
+
+HERTZ = """\
+[scene]
+name = "hertz"
+dimension = 2
+[soil]
+box_from_mm = [0.0, -2.0]
+box_to_mm = [4.0, 2.0]
+walls = "rigid"
+confining_pressure_MPa = 0.1
+grains_file = "grains.csv"
+d_mean_mm = 0.3
+contact_law = "hertz_mindlin"
+E_MPa = 250.0
+poisson = 0.3
+friction_deg = 30.0
+root_friction_deg = 20.0
+[[soil.obstacle]]
+name = "stone"
+shape = "stone"
+position_mm = [1.6, 0.0]
+radius_mm = 0.5
+[[soil.obstacle]]
+name = "holder"
+shape = "stone"
+position_mm = [3.2, 1.2]
+radius_mm = 0.5
+[penetrometer]
+diameter_mm = 0.8
+cone_angle_deg = 180.0
+rate_mm_h = 0.5
+depth_mm = 0.816
+average_from_mm = 0.8
+interval_h = 0.004
+seeds = 1
+"""
+# the second grain is held between a stone and a wall, so that there is a contact from the start
+HERTZ_GRAINS = "x_mm,y_mm,z_mm,radius_mm\n0.95,0,0,0.15\n3.2,1.85,0,0.151\n"
+HERTZ_READ_FROM_MM = 0.804
+
+PENETROMETER = """\
+[scene]
+name = "penetrometer"
+dimension = 2
+[soil]
+box_from_mm = [0.0, -1.2]
+box_to_mm = [2.4, 1.2]
+walls = "mixed"
+confining_pressure_MPa = 0.1
+d_range_mm = [0.2, 0.3]
+E_MPa = 250.0
+friction_deg = 30.0
+root_friction_deg = 20.0
+[penetrometer]
+diameter_mm = 0.6
+rate_mm_h = 0.5
+depth_mm = 0.9
+average_from_mm = 0.3
+seeds = 1
+"""
+
+ROOT_IN_SOIL = """\
+[scene]
+name = "soil"
+dimension = 2
+duration_h = 0.6
+[root]
+length_mm = 1.6
+radius_mm = 0.2
+cell_size_mm = {size}
+[tissue]
+E_axial_MPa = 1020.0
+[tissue.anisotropy]
+E_radial_max_MPa = 15000.0
+x_e_mm = 0.1
+s_e_per_mm = 20.0
+c_e = 0.2
+[pressure]
+differential_MPa = 1.0
+[growth]
+lambda0_ug_mm3_h = 4.0e5
+x_g_mm = 0.2
+s_g_mm = 0.4
+c_g = -0.95
+mature_at_mm = 1.1
+mature_width_mm = 0.3
+[soil]
+box_from_mm = [0.8, -1.0]
+box_to_mm = [2.8, 1.0]
+walls = "mixed"
+confining_pressure_MPa = 0.04
+d_range_mm = [0.15, 0.25]
+E_MPa = 100.0
+friction_deg = 30.0
+root_friction_deg = 20.0
+[soil.contact]
+interval_h = 4e-3
+[numerics]
+step_h = {step}
+[output]
+every_h = 0.02
+"""
+ROOT_IN_SOIL_DIAMETER_MM = 0.4
+
+
+def soil_step_h(across: int) -> float:
+    """Whole windows of 20 steps fit into the interval."""
+    return 6e-4 / across
+
+
+def penetrometer_problem(
+    name: str, title: str, scene: str, grains: str, measured: Measure, read: Callable[[dict, dict], list[float]]
+) -> Problem:
+    """A problem that `rootsoil penetrometer` solves; `read` gets the scene and the columns of penetrometer.csv."""
+
+    def prepare(programs: Path, folder: Path, across: int, choice: Choice) -> list[str]:
+        (folder / "scene.toml").write_text(scene, encoding="utf-8")
+        if grains:
+            (folder / "grains.csv").write_text(grains, encoding="utf-8")
+        sets = [part for key, value in choice.keys.items() for part in ("--set", f"{key}={text_of(value)}")]
+        return [str(programs / "rootsoil"), "penetrometer", "scene.toml", "--out", "run", "--quiet", *sets]
+
+    def read_folder(folder: Path) -> tuple[dict[str, list[float]], Cost]:
+        with (folder / "run" / "penetrometer.csv").open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        columns = {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
+        cost = Cost(math.nan, float(len(rows)), math.nan, math.nan)
+        return {measured.name: read(tomllib.loads(scene), columns)}, cost
+
+    return Problem(name, title, (measured,), prepare, read_folder, soil=True)
+
+
+def two_contacts_N(approach: float, stiffness: tuple[float, float]) -> float:
+    """Force (N) of two Hertzian contacts in a row, F = k d^1.5 each (k in N/mm^1.5), that approach (mm) together."""
+    return (approach / sum(k ** (-2.0 / 3.0) for k in stiffness)) ** 1.5 if approach > 0.0 else 0.0
+
+
+def hertz_errors(scene: dict, columns: dict) -> list[float]:
+    """Force on the probe, grain and stone, against Hertz: F = 4/3 E* sqrt(R) d^1.5 with 1/E* = 2 (1 - nu^2)/E and
+    1/R = 1/r1 + 1/r2 (Johnson, Contact Mechanics, eq. 4.23); mean over each reading's way."""
+    soil, probe = scene["soil"], scene["penetrometer"]
+    modulus = soil["E_MPa"] / (2.0 * (1.0 - soil["poisson"] ** 2))
+    probe_radius, grain, stone = probe["diameter_mm"] / 2.0, 0.15, 0.5
+    reduced = [1.0 / (1.0 / a + 1.0 / b) for a, b in ((probe_radius, grain), (grain, stone))]
+    stiffness = tuple(4.0 / 3.0 * modulus * math.sqrt(r) for r in reduced)
+    touch_mm = 0.8
+    section = probe["diameter_mm"] * soil["d_mean_mm"]
+    depth = columns["depth_mm"]
+    half = (depth[1] - depth[0]) / 2.0
+    errors = []
+    for at, Q in zip(depth, columns["Q_MPa"]):
+        if at - half < HERTZ_READ_FROM_MM:
+            continue
+        way = np.linspace(at - half, at + half, 101)
+        force = np.mean([two_contacts_N(x - touch_mm, stiffness) for x in way])
+        errors.append(float(Q * section / force - 1.0))
+    return errors
+
+
+def mean_Q(scene: dict, columns: dict) -> list[float]:
+    """Mean resistance behind average_from_mm over the confining pressure."""
+    inside = columns["depth_mm"] >= scene["penetrometer"]["average_from_mm"]
+    return [float(columns["Q_MPa"][inside].mean() / scene["soil"]["confining_pressure_MPa"])]
+
+
+def soil_values(run: Run) -> dict[str, list[float]]:
+    """From 0.1 h on: growth against what the closed form says with the soil's forces, and the mean force on the tip."""
+    history = run.history()
+    later = history["time_h"] > 0.1 - 1e-9
+    time, length = history["time_h"][later], history["length_mm"][later]
+    way = theory.cumulative_integral(time, history["soil_expected_tip_speed_mm_h"][later])[-1]
+    return {
+        "elongation": [float((length[-1] - length[0]) / way - 1.0)],
+        "tip force": [float(history["soil_tip_force_N"][later].mean())],
+    }
 
 
 # ---- all ------------------------------------------------------------------------------------------
@@ -438,16 +627,16 @@ def all_problems() -> list[Problem]:
             (TIP, RATE),
             lambda across: growth_scene(1.0, across),
             growth_step_h,
-            growth_errors,
+            lambda run: growth_errors(run, 0.4),
         ),
         scene_problem(
             "division",
             "Growth and division",
             (TIP, RATE, LENGTH),
-            lambda across: growth_scene(1.4, across)
+            lambda across: growth_scene(3.0, across)
             + DIVISION.format(l0=1.5 * GROWTH_DIAMETER_MM / across),
             growth_step_h,
-            division_errors,
+            lambda run: division_errors(run, 1.0),
         ),
         beam_problem("cantilever", "Cantilever", "deflection beyond one depth from the clamp, against Timoshenko's"),
         beam_problem("euler", "Euler load", "load of the part beyond one depth from the clamp, against Euler's and Engesser's"),
@@ -462,9 +651,37 @@ def all_problems() -> list[Problem]:
         scene_problem(
             "path",
             "Path along an obstacle",
-            (Measure("path", "tip's place at 0.5, 0.75 and 1 h, rms, in diameters, against the finest run", 1.0),),
+            (Measure("path", "tip's place at 0.25, 0.5 and 0.75 h, rms, in diameters, against the finest run", True, 1.0),),
             lambda across: PATH.format(size=PATH_DIAMETER_MM / across, step=path_step_h(across)),
             path_step_h,
             path_points,
+        ),
+        penetrometer_problem(
+            "hertz",
+            "Grain between probe and stone",
+            HERTZ,
+            HERTZ_GRAINS,
+            Measure("force", "force on the probe, rms over its way, against Hertz"),
+            hertz_errors,
+        ),
+        penetrometer_problem(
+            "penetrometer",
+            "Penetrometer",
+            PENETROMETER,
+            "",
+            Measure("Q", "mean resistance, against the finest run", True),
+            mean_Q,
+        ),
+        scene_problem(
+            "soil",
+            "Root among grains",
+            (
+                Measure("elongation", "growth, against the closed form with the soil's forces"),
+                Measure("tip force", "mean force on the tip, against the finest run", True),
+            ),
+            lambda across: ROOT_IN_SOIL.format(size=ROOT_IN_SOIL_DIAMETER_MM / across, step=soil_step_h(across)),
+            soil_step_h,
+            soil_values,
+            soil=True,
         ),
     ]
