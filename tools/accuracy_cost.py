@@ -68,6 +68,7 @@ METHODS = [
 ]
 PRESETS = [Choice(f"preset {name}", {"numerics.accuracy": name}) for name in ("fast", "balanced", "reference")]
 STEPS = [Choice("step", level=factor, step_factor=factor) for factor in (8.0, 4.0, 2.0, 1.0, 0.5)]
+MOVING = ("growth", "division", "path")
 IN_SOIL = {  # curve: key, levels by problem
     "interval": {
         "hertz": ("penetrometer.interval_h", (0.008, 0.002, 0.001)),
@@ -104,23 +105,27 @@ class Task:
 
 
 def full_grid(chosen: list[Problem]) -> list[Task]:
-    """The default first, so that a study that is stopped has it."""
-    tasks: list[Task] = []
-    with_soil = [p for p in chosen if p.soil]
+    """What matters most first, so that a study that is stopped has it."""
     plain = [p for p in chosen if not p.soil]
+    still = [p for p in plain if p.name not in MOVING]
     grown = [p for p in plain if p.name in ("growth", "division")]
-    moving = grown + [p for p in plain if p.name == "path"]
-    dear = [p for p in plain if p.name == "path"]
-    for across in (4, 6, 8, 10, 12, 16):
-        tasks += [Task(p, DEFAULT, across) for p in plain if p not in dear or 6 <= across <= 12]
-    tasks += [Task(p, choice, 8) for choice in PRESETS for p in plain if p not in dear]
+    path = [p for p in plain if p.name == "path"]
+    cheap = still + grown
+    tasks = [Task(p, DEFAULT, across) for across in (4, 6, 8, 10, 12) for p in cheap]
+    tasks += [Task(p, choice, 8) for choice in PRESETS for p in cheap]
     tasks += [Task(p, choice, 8) for choice in STEPS for p in grown]
-    tasks += [Task(p, choice, 6) for choice in STEPS for p in dear]
-    for across in (6, 10):
-        for choice in METHODS:
-            concerned = moving if choice.name == "no compensation of inertia" else plain
-            tasks += [Task(p, choice, across) for p in concerned if p not in dear or across == 6]
-    return tasks + soil_grid(with_soil)
+    tasks += [Task(p, choice, 6) for choice in METHODS for p in cheap if concerns(choice, p)]
+    tasks += soil_grid([p for p in chosen if p.soil])
+    tasks += [Task(p, DEFAULT, across) for across in (6, 8, 10) for p in path]
+    tasks += [Task(p, choice, 6) for choice in (*STEPS, *METHODS) for p in path if concerns(choice, p)]
+    tasks += [Task(p, DEFAULT, 16) for p in cheap]
+    tasks += [Task(p, choice, 10) for choice in METHODS for p in cheap if concerns(choice, p)]
+    return tasks + [Task(p, DEFAULT, 12) for p in path]
+
+
+def concerns(choice: Choice, problem: Problem) -> bool:
+    """Whether the choice can make a difference."""
+    return choice.name != "no compensation of inertia" or problem.name in MOVING
 
 
 def soil_grid(chosen: list[Problem]) -> list[Task]:

@@ -15,9 +15,9 @@ struct Preset {
   PresetRecord measured;  // docs/accuracy_cost.csv, "preset ..." of division; tests/tools/test_accuracy_cost.py compares
 };
 
-// Finer windows, other eta and the quadratic gradient everywhere cost more than the step for the same gain, or lose in
-// bending (docs/accuracy_cost.md): presets differ in the step. At 0.04 cells a step the 50 h main job flutters
-// (docs/decisions/0003): its tip leaves the axis as exp(0.5 t).
+// Presets differ in the step: shorter windows, another eta and the quadratic gradient everywhere gain little in growth
+// for their time, and lose in bending or under pressure (docs/accuracy_cost.md). At 0.04 cells a step the tip of the 50 h
+// main job leaves its axis (docs/decisions/0003): 0.7 um at 50 h, growing as exp(0.13 t).
 constexpr Preset presets[] = {
     {"fast", 1.5, 20, "quadratic_at_surface", {0.02, 1e-3}, {0.006, 0.01, 0.3}},
     {"balanced", 1.5, 20, "quadratic_at_surface", {0.01, 1e-3}, {0.006, 0.001, 0.8}},

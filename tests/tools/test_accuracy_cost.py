@@ -108,6 +108,14 @@ def test_presets_state_what_was_measured(project: Path, programs: Path, tmp_path
     assert stated["preset_ms_per_cell_hour"] == pytest.approx(work_precision.time_per_cell_hour_ms(found), rel=TOLERANCE)
 
 
+def test_the_page_is_the_table(project: Path):
+    """docs/accuracy_cost.md is what tools/accuracy_cost.py makes of docs/accuracy_cost.csv."""
+    known = problems.all_problems()
+    rows = with_errors(read_rows(project / "docs" / "accuracy_cost.csv"), known)
+    assert len({r.key for r in rows}) > 200
+    assert (project / "docs" / "accuracy_cost.md").read_text() == work_precision.page(rows, known)
+
+
 def test_a_row_is_not_run_again(project: Path, programs: Path, tmp_path: Path):
     command = [sys.executable, project / "tools" / "accuracy_cost.py", "--quick", "--out", tmp_path, "--only", "thrust"]
     command += ["--programs", programs]
