@@ -32,6 +32,7 @@ CPU_LIMIT_S = 60  # of one run
 BOUNDS = PROJECT / "tools" / "accuracy_bounds.toml"
 BOUND_FACTOR = 1.5
 BOUND_FLOOR = 3e-4  # below it errors are rounding and settling, which another compiler changes
+BOUND_FLOOR_OF = {"cell length": 0.06}  # one layer of cells that divides a moment earlier
 STATUS_OF_EXIT = {2: "refused", 3: "unphysical", 4: "soil failed", -24: "too long"}  # 24: SIGXCPU
 
 PAPER = Choice(
@@ -249,9 +250,12 @@ def bounds_text(rows: list[Row]) -> str:
     lines = [
         "# SPDX-License-Identifier: MIT",
         "# Errors of tools/accuracy_cost.py --quick; tests/tools/test_accuracy_cost.py fails when one is larger than `factor`",
-        "# times what stands here, and larger than `floor`. Written by tools/accuracy_cost.py --quick --record-bounds.",
+        "# times what stands here, and larger than its floor. Written by tools/accuracy_cost.py --quick --record-bounds.",
         f"factor = {BOUND_FACTOR}",
         f"floor = {BOUND_FLOOR}",
+        "",
+        "[floor_of]",
+        *(f'"{measure}" = {floor}' for measure, floor in BOUND_FLOOR_OF.items()),
         "",
         "[errors]",
     ]

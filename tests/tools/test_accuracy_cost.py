@@ -143,7 +143,7 @@ def exceeded(rows: list[Row], recorded: dict) -> list[str]:
                 problems_found.append(f"{name}: {r.status}, was {bound}")
         elif r.status != "done":
             problems_found.append(f"{name}: {r.status} ({r.remark})")
-        elif not r.error <= max(recorded["factor"] * bound, recorded["floor"]):
+        elif not r.error <= max(recorded["factor"] * bound, recorded["floor_of"].get(r.measure, recorded["floor"])):
             problems_found.append(f"{name}: {r.error:.3g}, was {bound:.3g}")
     return problems_found
 
