@@ -80,6 +80,7 @@ Json examine(const Scene& scene) {
                                  (terms.any() ? sizeof(double) : 0) + (terms.non_affine ? sizeof(Vec<Dim>) : 0) +
                                  (terms.non_affine && scene.growth ? sizeof(double) : 0);  // retention
   const double pairs = static_cast<double>(tissue.pairs.pairs.size());
+  const PresetRecord record = preset_record(scene.numerics.accuracy);
   return {{"scene", scene.scene.name},
           {"dimension", Dim},
           {"cells", cells},
@@ -99,7 +100,9 @@ Json examine(const Scene& scene) {
           {"steps", steps},
           {"stable_step", "any: inertia follows the step"},
           {"inertia_error_at_start", inertia_error<Dim>(tissue, solver.axis(), solver.window_h())},
-          {"discretisation_error", discretisation_error(scene.numerics.accuracy)},
+          {"discretisation_error", record.discretisation_error},
+          {"preset_inertia_error", record.inertia_error},
+          {"preset_ms_per_cell_hour", record.ms_per_cell_hour},
           {"closed_form_tip_speed_mm_h", theory.tip_speed_mm_h},
           {"closed_form_peak_strain_rate_per_h", theory.peak_rate_per_h},
           {"cells_per_step_at_the_tip", theory.tip_speed_mm_h * tissue.step_h / built.initial.cell_size_mm},
@@ -131,6 +134,10 @@ void print(const Json& found) {
   } else {
     fmt::print("fades as the root settles, every run measures it\n");
   }
+  fmt::print("{} was measured in growth, 8 cells across: strain rate {:.2g} % off, inertia error {:.2g} %, {:.2g} ms for a "
+             "cell and an hour (docs/accuracy_cost.md)\n",
+             found["accuracy"].get<std::string>(), 100.0 * found["discretisation_error"].get<double>(),
+             100.0 * found["preset_inertia_error"].get<double>(), found["preset_ms_per_cell_hour"].get<double>());
   fmt::print("hyperbolic: {} (smallest acoustic modulus {:.4g} MPa)\n", found["hyperbolic"].get<bool>() ? "yes" : "no",
              found["smallest_acoustic_modulus_MPa"].get<double>());
   if (found["closed_form_tip_speed_mm_h"].get<double>() > 0.0) {

@@ -2,6 +2,7 @@
 #include "root_sph/scene/model.hpp"
 
 #include "root_sph/core/errors.hpp"
+#include "root_sph/scene/presets.hpp"
 #include "root_sph/tissue/closed_form.hpp"
 #include "root_sph/tissue/hyperbolicity.hpp"
 
@@ -90,13 +91,10 @@ double final_tip_speed_mm_h(const Scene& scene, double length_mm) {
 template <int Dim>
 double automatic_step_h(const Scene& scene) {
   const double size = scene.root.cells_file.empty() ? scene.root.cell_size_mm : 0.01;
-  // Cells' lengths that the tip moves in a step: inertia's share of the stress is of the order of its square.
-  double fraction = 0.010;
-  if (scene.numerics.accuracy == "fast") fraction = 0.02;
-  if (scene.numerics.accuracy == "reference") fraction = 0.005;
+  const StepRule rule = step_rule(scene.numerics.accuracy);
   const double length = scene.root.cells_file.empty() ? scene.root.length_mm : 0.5;
   const double speed = final_tip_speed_mm_h<Dim>(scene, length);
-  if (speed > 0.0) return std::min(1e-3, fraction * size / speed);
+  if (speed > 0.0) return std::min(rule.longest_step_h, rule.tip_cells_per_step * size / speed);
   // Static: critically damped, the slowest mode settles to rounding within some 10 steps a cell along the root.
   return scene.scene.duration_h / std::max(2000.0, 25.0 * length / size);
 }

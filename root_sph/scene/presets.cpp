@@ -11,13 +11,17 @@ struct Preset {
   double eta;
   int window_steps;
   const char* gradient;
-  double discretisation_error;
+  StepRule step;
+  PresetRecord measured;  // docs/accuracy_cost.csv, "preset ..." of division; tests/tools/test_accuracy_cost.py compares
 };
 
+// Presets differ in the step: shorter windows, another eta and the quadratic gradient everywhere gain little in growth
+// for their time, and lose in bending or under pressure (docs/accuracy_cost.md). At 0.04 cells a step the tip of the 50 h
+// main job leaves its axis (docs/decisions/0003): 0.7 um at 50 h, growing as exp(0.13 t).
 constexpr Preset presets[] = {
-    {"fast", 1.5, 20, "quadratic_at_surface", 0.006},
-    {"balanced", 1.5, 20, "quadratic_at_surface", 0.006},
-    {"reference", 1.5, 20, "quadratic_at_surface", 0.006},
+    {"fast", 1.5, 20, "quadratic_at_surface", {0.02, 1e-3}, {0.0062, 0.0022, 0.46}},
+    {"balanced", 1.5, 20, "quadratic_at_surface", {0.01, 1e-3}, {0.0058, 0.00016, 0.78}},
+    {"reference", 1.5, 20, "quadratic_at_surface", {0.005, 1e-3}, {0.0058, 0.00034, 1.5}},
 };
 
 const Preset& find_preset(std::string_view accuracy) {
@@ -45,6 +49,8 @@ NumericsSection preset(std::string_view accuracy) {
   return numerics;
 }
 
-double discretisation_error(std::string_view accuracy) { return find_preset(accuracy).discretisation_error; }
+StepRule step_rule(std::string_view accuracy) { return find_preset(accuracy).step; }
+
+PresetRecord preset_record(std::string_view accuracy) { return find_preset(accuracy).measured; }
 
 }  // namespace rootsoil

@@ -232,6 +232,7 @@ void Run<Dim>::write_summary(const std::string& status) const {
   }
   nlohmann::ordered_json tip;
   for (int a = 0; a < 3; ++a) tip.push_back(a < Dim ? solver.axis().tip_mm()[a] : 0.0);
+  const PresetRecord record = preset_record(scene_.numerics.accuracy);
   const nlohmann::ordered_json summary{
       {"program", "rootsoil"},
       {"version", ROOTSOIL_VERSION},
@@ -254,7 +255,9 @@ void Run<Dim>::write_summary(const std::string& status) const {
       {"accuracy", scene_.numerics.accuracy},
       {"inertia_error", inertia_error_},
       {"inertia_error_max", inertia_error_max_},
-      {"discretisation_error", discretisation_error(scene_.numerics.accuracy)},
+      {"discretisation_error", record.discretisation_error},
+      {"preset_inertia_error", record.inertia_error},
+      {"preset_ms_per_cell_hour", record.ms_per_cell_hour},
       {"momentum_residual", momentum_residual_max_},
       {"degenerate_cells_max", degenerate_max_},
       {"cell_file_volume_scale", built_.initial.volume_scale},
@@ -338,9 +341,9 @@ ExitStatus Run<Dim>::go() {
   write_summary("done");
   log_.info("done: {} cells after {} divisions, root {:.4f} mm, {:.1f} s, {:.0f} MB", tissue.cells.total(), divisions(),
             solver.axis().length_mm(), wall_s_, peak_memory_mb());
-  log_.info("inertia error {:.2g} % of p at the end, at most {:.2g} %; discretisation error about {:.2g} % ({})",
+  log_.info("this run: inertia error {:.2g} % of p at the end, at most {:.2g} %; discretisation error about {:.2g} % ({})",
             100.0 * inertia_error_, 100.0 * inertia_error_max_,
-            100.0 * discretisation_error(scene_.numerics.accuracy), scene_.numerics.accuracy);
+            100.0 * preset_record(scene_.numerics.accuracy).discretisation_error, scene_.numerics.accuracy);
   for (const auto& effect : model().effects) {
     if (const std::string remark = effect->closing_remark(); !remark.empty()) log_.info("{}", remark);
   }

@@ -21,7 +21,8 @@ HISTORY = [
 SUMMARY = {
     "status", "time_h", "steps", "cells_start", "cells_end", "divisions", "tip_mm", "length_mm", "wall_s",
     "wall_s_by_effect", "pairs", "pairs_per_s", "peak_memory_mb", "threads", "dt_h", "inertia_error_max",
-    "momentum_residual", "active_effects", "fields", "inertia_error", "discretisation_error",
+    "momentum_residual", "active_effects", "fields", "inertia_error", "discretisation_error", "preset_inertia_error",
+    "preset_ms_per_cell_hour",
 }  # fmt: skip
 # name: numbers a cell, unit
 FIELDS = {

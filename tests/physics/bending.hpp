@@ -70,6 +70,8 @@ struct BeamResult {
   double slope = 0.0;               ///< of that tangent
   double last_change = 0.0;         ///< relative change of the deflection over the last tenth of the run
   double still_moving = 0.0;        ///< kinetic energy over the work of the force
+  double steps = 0.0;
+  double cells = 0.0;
   Section section;
 };
 
@@ -152,7 +154,9 @@ BeamResult bend(const std::string& text, const std::vector<std::string>& overrid
     result.relative_mm = result.deflection_mm - fit[0] - fit[1] * result.beyond_mm;
   }
   result.still_moving = energies(run.tissue).kinetic / std::abs(lateral_force * result.deflection_mm);
-  record("steps", static_cast<double>(run.solver.steps()));
+  result.steps = static_cast<double>(run.solver.steps());
+  result.cells = static_cast<double>(run.tissue.cells.size());
+  record("steps", result.steps);
   return result;
 }
 
@@ -160,6 +164,8 @@ BeamResult bend(const std::string& text, const std::vector<std::string>& overrid
 /// And of the part beyond one depth, against the tangent there: F l^3/(3 E I), shear is part of the tangent.
 struct Ratio {
   double edge = 0.0, first_layer = 0.0, beam = 0.0;
+  double steps = 0.0, cells = 0.0;  ///< of all runs together, of one
+  double last_change = 0.0;         ///< the largest of the runs
 };
 
 template <int Dim>
@@ -173,7 +179,8 @@ Ratio cantilever(int cells_across, const std::vector<std::string>& overrides = {
   const Ratio ratio{
       r.deflection_mm / cantilever_deflection(r.section, force, r.load_at_mm),
       r.deflection_mm / cantilever_deflection(r.section, force, r.load_at_mm - r.clamp_at_mm),
-      r.relative_mm / (force * std::pow(r.beyond_mm, 3) / (3.0 * r.section.EI))};
+      r.relative_mm / (force * std::pow(r.beyond_mm, 3) / (3.0 * r.section.EI)),
+      r.steps, r.cells, r.last_change};
   const std::string name = std::to_string(Dim) + "D " + std::to_string(cells_across) + " across: ";
   record(name + "deflection/theory, clamp at edge", ratio.edge);
   record(name + "deflection/theory, at first layer", ratio.first_layer);
@@ -224,7 +231,8 @@ Ratio buckling(int cells_across, const std::vector<std::string>& overrides = {})
   measured.EI = 0.5 * (low + high);
 
   const Ratio ratio{whole / theory, whole / euler_load(plain.section, plain.load_at_mm - plain.clamp_at_mm),
-                    euler_load(measured, plain.load_at_mm) / theory};
+                    euler_load(measured, plain.load_at_mm) / theory, plain.steps + pressed.steps, plain.cells,
+                    std::max(plain.last_change, pressed.last_change)};
   const std::string name = std::to_string(Dim) + "D " + std::to_string(cells_across) + " across: ";
   record(name + "Euler load/theory, clamp at edge", ratio.edge);
   record(name + "Euler load/theory, at first layer", ratio.first_layer);

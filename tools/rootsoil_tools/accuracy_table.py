@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""The table of tools/accuracy_cost.py: a row for each run and measure, in a CSV."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+
+import numpy as np
+
+from rootsoil_tools.problems import Measure, Problem
+
+DEFAULT_NAME = "default"
+FINEST_NAME = "finest"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measure of one run. `error` is empty where there is none (yet)."""
+
+    key: str
+    problem: str
+    choice: str
+    across: int
+    level: float
+    measure: str
+    status: str
+    error: float
+    inertia_error: float
+    cpu_s: float
+    wall_s: float
+    cells: float
+    steps: float
+    cell_steps: float
+    hours: float
+    program: str
+    values: str
+    remark: str
+
+
+def write_rows(rows: Sequence[Row], path: Path) -> None:
+    """Replaces the file as a whole."""
+    partial = path.with_suffix(".partial")
+    with partial.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([f.name for f in fields(Row)])
+        for row in rows:
+            values = [getattr(row, f.name) for f in fields(Row)]
+            writer.writerow(["" if v != v else f"{v:.6g}" if isinstance(v, float) else v for v in values])
+    partial.replace(path)
+
+
+def read_rows(path: Path) -> list[Row]:
+    """The rows of a file; none where there is no file."""
+    if not path.is_file():
+        return []
+    types: dict[str, Callable] = {"float": lambda text: float(text) if text else math.nan, "int": int, "str": str}
+    with path.open(newline="", encoding="utf-8") as file:
+        return [Row(**{f.name: types[str(f.type)](row[f.name]) for f in fields(Row)}) for row in csv.DictReader(file)]
+
+
+def numbers(row: Row) -> np.ndarray:
+    """The values of a row."""
+    return np.array(row.values.split(), dtype=float)
+
+
+def finest(rows: Sequence[Row], row: Row) -> Row | None:
+    """The run that the row is compared with, where there is no closed form: the choice "finest", or the default with
+    most cells."""
+    same = [r for r in rows if (r.problem, r.measure, r.status) == (row.problem, row.measure, "done")]
+    named = [r for r in same if r.choice == FINEST_NAME]
+    return max(named or [r for r in same if r.choice == DEFAULT_NAME], key=lambda r: r.cell_steps, default=None)
+
+
+def error_of(row: Row, measure: Measure, rows: Sequence[Row]) -> float:
+    """Root mean square of the values, or of their differences to those of the finest run over the scale; NaN where
+    there is none."""
+    if row.status != "done":
+        return math.nan
+    values = numbers(row)
+    if not measure.finest:
+        return float(np.sqrt(np.mean(values**2)))
+    reference = finest(rows, row)
+    if reference is None or reference.key == row.key:
+        return math.nan
+    exact = numbers(reference)
+    scale = measure.scale or float(np.sqrt(np.mean(exact**2)))
+    return float(np.sqrt(np.mean((values - exact) ** 2))) / scale
+
+
+def with_errors(rows: Sequence[Row], problems: Sequence[Problem]) -> list[Row]:
+    """The rows with their errors, which may change when a finer run comes in."""
+    by_name = {p.name: p for p in problems}
+    known = [row for row in rows if row.problem in by_name]
+    return [replace(r, error=error_of(r, by_name[r.problem].measure(r.measure), known)) for r in known]
