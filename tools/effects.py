@@ -13,7 +13,6 @@ import argparse
 import csv
 import json
 import os
-import re
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -24,7 +23,7 @@ import numpy as np
 
 from rootsoil_tools import draw
 from rootsoil_tools.runs import Run, RunError
-from rootsoil_tools.series import PROGRAM, PROJECT
+from rootsoil_tools.series import PROGRAM, PROJECT, without_sections
 
 SCENARIOS = PROJECT / "scenarios"
 JOBS = {"main job (2D)": SCENARIOS / "case2_arabidopsis.toml", "3D": SCENARIOS / "growth_3d.toml"}
@@ -49,12 +48,6 @@ REMOVALS = (
     Removal("pair resistance", ("non_affine_control",), buys="no odd-even modes; bending needs it"),
 )
 SLEEP_HOURS = (2.0, 10.0, 20.0, 30.0, 40.0, 50.0)
-
-
-def without(text: str, sections: Sequence[str]) -> str:
-    """A scene file without some of its sections."""
-    parts = re.split(r"(?m)^(?=\[)", text)
-    return "".join(p for p in parts if not any(re.match(rf"\[+{re.escape(s)}\]", p) for s in sections))
 
 
 def cpu_s(command: Sequence[str | Path]) -> float:
@@ -116,7 +109,7 @@ def shares(program: Path, job: Path, steps: int, pairs: int, work: Path) -> list
         if removal.effect not in active:
             continue
         scene = work / f"{job.stem}_without_{removal.effect.replace(' ', '_')}.toml"
-        scene.write_text(without(text, removal.sections), encoding="utf-8")
+        scene.write_text(without_sections(text, removal.sections), encoding="utf-8")
         less = examine(program, scene, removal.settings)
         ratios = []
         for _ in range(pairs):  # in turn: the machine's mood is the same for both

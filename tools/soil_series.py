@@ -17,7 +17,6 @@ from __future__ import annotations
 import argparse
 import csv
 import dataclasses
-import re
 import subprocess
 import sys
 import tomllib
@@ -30,7 +29,7 @@ from matplotlib.axes import Axes
 
 from rootsoil_tools import draw, measure
 from rootsoil_tools.runs import Run, RunError
-from rootsoil_tools.series import PROGRAM, PROJECT, Series, resistance_MPa
+from rootsoil_tools.series import PROGRAM, PROJECT, Series, resistance_MPa, without_sections
 from rootsoil_tools.theory import model_of
 
 PRESSURES_MPA = (0.01, 0.02, 0.035, 0.05)
@@ -38,6 +37,7 @@ MODULI_MPA = (1600.0, 400.0, 200.0, 100.0, 50.0)
 SEEDS = 3
 SETTLED_FROM = 0.25  # of the run: before, forces rise
 DEPTHS_MM = (1.2, 2.6)  # over which the penetrometer's resistance is averaged
+SOIL_SECTIONS = ("soil", "soil.contact", "soil.obstacle", "penetrometer")
 SCENES = {"pressure": "soil_tutorial", "flexibility": "soil_buckling"}
 QUICK = {"pressures": (0.01, 0.05), "moduli": (1600.0, 100.0), "seeds": 1, "fraction": 0.25}
 
@@ -108,12 +108,6 @@ def zone_radius(run: Run) -> float:
     frame = run.frame(-1)
     zone = model_of(run.scene, float(run.times_h[-1])).growth_zone(float(frame["distance_to_tip"].max()))
     return float(np.nanmean(measure.radii(frame, run.dimension, np.linspace(0.5 * zone, zone, 4))))
-
-
-def without_soil(text: str) -> str:
-    """The scene file without [soil...], [[soil...]] and [penetrometer], comments kept elsewhere."""
-    sections = re.split(r"(?m)^(?=\[)", text)
-    return "".join(s for s in sections if not re.match(r"\[+(soil\b|penetrometer\b)", s))
 
 
 def probe_settings(scene: dict, rate_mm_h: float, seeds: int, depths_mm: tuple[float, float]) -> list[str]:
@@ -198,7 +192,7 @@ def pressure_series(options: argparse.Namespace, until_h: float) -> str:
     scene = tomllib.loads(options.scene.read_text(encoding="utf-8"))
     uniform = options.out / "uniform.toml"
     options.out.mkdir(parents=True, exist_ok=True)
-    uniform.write_text(without_soil(options.scene.read_text(encoding="utf-8")), encoding="utf-8")
+    uniform.write_text(without_sections(options.scene.read_text(encoding="utf-8"), SOIL_SECTIONS), encoding="utf-8")
     alone = Series(uniform, options.out, options.program, threads=options.threads)
     passages: list[Passage] = []
     extra: list[dict[str, float]] = []

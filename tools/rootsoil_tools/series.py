@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -14,6 +15,12 @@ from rootsoil_tools.runs import RunError, read_summary
 
 PROJECT = Path(__file__).resolve().parents[2]
 PROGRAM = PROJECT / "build" / "release" / "rootsoil"
+
+
+def without_sections(text: str, names: Sequence[str]) -> str:
+    """A scene file without these sections, [name] or [[name]]."""
+    parts = re.split(r"(?m)^(?=\[)", text)
+    return "".join(p for p in parts if not any(re.match(rf"\[+{re.escape(name)}\]", p) for name in names))
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+"""The page on what effects cost."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import tomllib
+from pathlib import Path
+
+import effects as tool
+import pytest
+
+
+@pytest.mark.parametrize("removal", tool.REMOVALS, ids=lambda removal: removal.effect)
+def test_what_is_taken_out_is_gone(removal: tool.Removal, project: Path, tmp_path: Path):
+    program = project / "build" / "release" / "rootsoil"
+    job = tool.JOBS["main job (2D)"]
+    scene = tmp_path / "less.toml"
+    scene.write_text(tool.without_sections(job.read_text(encoding="utf-8"), removal.sections), encoding="utf-8")
+
+    def active(path: Path, settings: tuple[str, ...] = ()) -> set[str]:
+        return {effect["name"] for effect in tool.examine(program, path, settings)["effects"] if effect["active"]}
+
+    assert removal.effect in active(job)
+    assert removal.effect not in active(scene, removal.settings)
+
+
+def test_every_scene_is_in_the_recorded_page(project: Path):
+    page = (project / "docs" / "effects.md").read_text(encoding="utf-8")
+    for scene in (project / "scenarios").glob("*.toml"):
+        assert f"`{scene.stem}`" in page, scene.name
+        soil = "soil" in tomllib.loads(scene.read_text(encoding="utf-8"))
+        (row,) = [line for line in page.splitlines() if line.startswith(f"| `{scene.stem}` |")]
+        assert ("yade" in row) == soil, row
+
+
+@pytest.mark.slow
+def test_sleep_pays(project: Path, tmp_path: Path):
+    """The quick study: an hour with sleep costs less, at a length that differs in the seventh digit at most."""
+    command = [project / "tools" / "effects.py", "--quick", "--out", tmp_path / "out", "--work", tmp_path / "work"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "out" / "images" / "effects_sleep.csv").open() as file:
+        last = list(csv.DictReader(file))[-1]
+    assert float(last["asleep_s_per_h"]) < 0.85 * float(last["awake_s_per_h"])
+    lengths = [tool.Run(tmp_path / "work" / name).history()["length_mm"][-1] for name in ("awake", "asleep")]
+    assert lengths[1] == pytest.approx(lengths[0], rel=1e-6)
+    assert "| pair resistance |" in (tmp_path / "out" / "effects.md").read_text(encoding="utf-8")
