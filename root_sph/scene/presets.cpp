@@ -12,12 +12,12 @@ struct Preset {
   int window_steps;
   const char* gradient;
   StepRule step;
-  PresetRecord measured;  // docs/accuracy_cost.csv, "preset ..." of division; tests/tools/test_accuracy_cost.py compares
+  PresetRecord measured;  // in docs/accuracy_cost.csv; tests/tools/test_accuracy_cost.py compares
 };
 
 // Presets differ in the step: shorter windows, another eta and the quadratic gradient everywhere gain little in growth
-// for their time, and lose in bending or under pressure (docs/accuracy_cost.md). At 0.04 cells a step the tip of the 50 h
-// main job leaves its axis (docs/decisions/0003): 0.7 um at 50 h, growing as exp(0.13 t).
+// for their time, and lose in bending or under pressure (docs/accuracy_cost.md). At 0.04 cells a step the tip of the 50
+// h main job leaves its axis (docs/decisions/0003): 0.7 um at 50 h, growing as exp(0.13 t).
 constexpr Preset presets[] = {
     {"fast", 1.5, 20, "quadratic_at_surface", {0.02, 1e-3}, {0.0062, 0.0022, 0.46}},
     {"balanced", 1.5, 20, "quadratic_at_surface", {0.01, 1e-3}, {0.0058, 0.00016, 0.78}},

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
-// One beam of the bending tests with choices of the caller's, for tools/accuracy_cost.py. The last line of its output is
-// JSON: measured over theoretical value of the part beyond one depth from the clamp, cells, steps, and how far it had
-// come to rest.
-#include "bending.hpp"
-
+// One beam of the bending tests with choices of the caller's, for tools/accuracy_cost.py. The last line of its output
+// is JSON: measured over theoretical value of the part beyond one depth from the clamp, cells, steps, and how far it
+// had come to rest.
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <optional>
 #include <string_view>
 
+#include "bending.hpp"
+
 namespace {
 
 using namespace rootsoil;
 
 /// cantilever: deflection over Timoshenko's; euler: buckling load over Euler's and Engesser's.
-std::optional<physics::Ratio> bend(std::string_view problem, int cells_across, const std::vector<std::string>& overrides) {
+std::optional<physics::Ratio> bend(std::string_view problem, int cells_across,
+                                   const std::vector<std::string>& overrides) {
   if (problem == "cantilever") return physics::cantilever<2>(cells_across, overrides);
   if (problem == "euler") return physics::buckling<2>(cells_across, overrides);
   return std::nullopt;
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}\n", error.what());
     return static_cast<int>(error.status());
   }
-  fmt::print(stderr, "usage: bending_problem cantilever|euler CELLS_ACROSS({} to {}) [section.key=value]...\n", fewest, most);
+  fmt::print(stderr, "usage: bending_problem cantilever|euler CELLS_ACROSS({} to {}) [section.key=value]...\n", fewest,
+             most);
   return static_cast<int>(ExitStatus::bad_input);
 }

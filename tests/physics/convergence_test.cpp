@@ -59,9 +59,9 @@ TEST(Convergence, SecondOrderInCellSizeInTheInteriorFirstOrBetterWithEdges) {
 
 /// Mean over half an hour of the unbalanced axial force over p times the section.
 double mean_inertia_error(double step_h, const std::string& compensation) {
-  SceneRun<2> run(growth_case, {"root.radius_mm=0.04", "root.length_mm=1.6", "root.cell_size_mm=0.013333333333333334",
-                                "numerics.inertia_compensation=" + compensation,
-                                "numerics.step_h=" + std::to_string(step_h)});
+  SceneRun<2> run(growth_case,
+                  {"root.radius_mm=0.04", "root.length_mm=1.6", "root.cell_size_mm=0.013333333333333334",
+                   "numerics.inertia_compensation=" + compensation, "numerics.step_h=" + std::to_string(step_h)});
   run.advance_to(0.5);
   double sum = 0.0, windows = 0.0;
   run.advance_to(1.0, [&] {

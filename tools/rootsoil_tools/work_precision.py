@@ -484,7 +484,8 @@ that it meets is a closed form's.
 ## Diagrams
 
 One curve a choice, its points are numbers of cells across (the dashed curve: steps). The grey band is the Pareto front;
-ringed runs lie on it: none is both cheaper and more exact.
+ringed runs lie on it: none is both cheaper and more exact. A choice that fails elsewhere can lie on a front by chance (the
+plain gradient on the path's).
 
 {pictures}
 """
