@@ -35,7 +35,7 @@ from engine import VERSION, O, utils, wrapper
 from soil_file import Refused, read_soil_file, write_soil_file
 
 SUBSTEPS_AT_LEAST = 10
-FORCE_SAMPLES = 4  # substeps at which forces are read, evenly spread over an interval
+FORCE_SAMPLES = 4  # equal parts of an interval, in whose middle forces are read
 CHECK_EVERY = 50  # intervals between two looks at what is costly to see
 CARVE = 0.95  # a grain goes where it overlaps the root by more than the rest of its radius
 SETTLED = 0.02  # mean unbalanced over mean contact force, after the root has been put in
@@ -324,7 +324,7 @@ class Soil:
             self.progress(f"settling around the root: unbalanced {unbalanced:.3f}")
             if not isfinite(unbalanced) or unbalanced < SETTLED:
                 break
-        self.numbers["soil_settled_unbalanced"] = unbalanced
+        self.numbers["soil_settled_unbalanced"] = unbalanced if isfinite(unbalanced) else 0.0  # without a contact
         self.placed = True
 
     # ---- an interval ----------------------------------------------------------------------------
@@ -361,17 +361,19 @@ class Soil:
         self.row_position = end  # within rounding
 
         first = O.iter
-        samples = sorted({substeps - 1 - k * substeps // FORCE_SAMPLES for k in range(FORCE_SAMPLES)})
+        # forces that are read are those at a substep's start: one more substep, and they are those of the middle
+        samples = sorted({(2 * k + 1) * substeps // (2 * FORCE_SAMPLES) + 1 for k in range(FORCE_SAMPLES)})
         touching = [slot for _, slot in self.in_touch]
         readings = np.zeros((len(touching), 6))
         dem_s, done = 0.0, 0
-        for sample in samples:
+        for sample in [*samples, substeps]:
             t = time.perf_counter()
-            for _ in range(sample + 1 - done):
+            for _ in range(sample - done):
                 O.step()
-            done = sample + 1
+            done = sample
             dem_s += time.perf_counter() - t
-            readings += read_forces(touching)
+            if sample < substeps:
+                readings += read_forces(touching)
         loads = np.zeros((len(self.row_slots), 6))
         loads[[k for k, _ in self.in_touch]] = readings / len(samples)
         self._add_new_contacts(loads)
