@@ -154,15 +154,16 @@ def cells_kept(frame: Frame, cells_start: int) -> float:
 def neighbours_kept(frames: list[Frame], dimension: int) -> float:
     """Fewest neighbours over what a cell must keep, in all but the first of the frames.
 
-    A cell must keep 6 (3D: 12), in a root so thin that most cells have fewer those. A cell that began with fewer, itself or
-    its nearest known ancestor, must keep half of what it had.
+    A cell must keep 6 (3D: 12); one that began with fewer, itself or its nearest known ancestor, half of those. No cell counts
+    as having begun with more than most cells of the root.
     """
-    enough = min(6 if dimension == 2 else 12, float(np.median(frames[0]["neighbours"]))) if frames else 0.0
+    enough = 6.0 if dimension == 2 else 12.0
+    usual = float(np.median(frames[0]["neighbours"]))
     began: dict[int, float] = {}
     worst = np.inf
     for k, frame in enumerate(frames):
         for cell, parent, count in zip(frame["cell_id"], frame["parent_id"], frame["neighbours"]):
-            start = began.setdefault(int(cell), began.get(int(parent), float(count) if k == 0 else enough))
+            start = began.setdefault(int(cell), began.get(int(parent), min(float(count), usual) if k == 0 else usual))
             if k > 0:
                 worst = min(worst, float(count) / (enough if start >= enough else max(0.5 * start, 1.0)))
     return float(worst)
