@@ -47,6 +47,7 @@ class Edge:
     changes: Callable[[float], Changes]
     hours: Callable[[float], float]
     quick: bool = False
+    of_ratio: bool = False
 
 
 def edges() -> list[Edge]:
@@ -58,8 +59,8 @@ def edges() -> list[Edge]:
              lambda v: {"numerics.step_h": v}, lambda v: max(3.0, 120 * v), quick=True),
         Edge("step_window_1", "h", "step, windows of one step", 1e-3, 0.5,
              lambda v: {"numerics.step_h": v, "numerics.window_steps": 1}, lambda v: 3.0),
-        Edge("ratio_up", "-", "E_R/E_A, upwards", 1.0, 270.0, moduli, lambda v: 1.0, quick=True),
-        Edge("ratio_down", "-", "E_R/E_A, downwards", 1.0, 0.01, moduli, lambda v: 1.0),
+        Edge("ratio_up", "-", "E_R/E_A, upwards", 1.0, 270.0, moduli, lambda v: 1.0, quick=True, of_ratio=True),
+        Edge("ratio_down", "-", "E_R/E_A, downwards", 1.0, 0.01, moduli, lambda v: 1.0, of_ratio=True),
         Edge("stretch", "-", "stretch of all tissue, no division", 1.5, 100.0, lambda v: free, lambda v: log(v) / rate_per_h),
         Edge("stretch_division", "-", "stretch of all tissue, with division", 1.5, 30.0,
              lambda v: UNIFORM, lambda v: log(v) / rate_per_h),
@@ -127,12 +128,11 @@ class Runner:
     def stable(self, edge: Edge, scheme: Scheme, value: float) -> tuple[bool, str]:
         """Whether the base case is stable at this value of an edge's quantity, and the criterion that fails."""
         value = float(f"{value:.3g}")
-        # the paper's law is hyperbolic only where E_R is near E_A
-        about = moduli(1.0) if scheme is PAPER else {}
-        case = Case(edge.name, edge.meaning, {**about, **edge.changes(value)}, edge.hours(value), edge.hours(value))
-        if scheme is PAPER and "tissue.anisotropy" in UNIFORM and "stretch" in edge.name:
-            case = Case(edge.name, edge.meaning, {**edge.changes(value), **about}, case.short_h, case.long_h)
+        changes = edge.changes(value)
+        if scheme is PAPER and not edge.of_ratio:  # its law is hyperbolic only where E_R is near E_A
+            changes = {**changes, **moduli(1.0)}
         hours = edge.hours(value)
+        case = Case(edge.name, edge.meaning, changes, hours, hours)
         folder, message = self.run(f"{edge.name}-{scheme.name}-{value:g}", scene_text(case, scheme, hours), hours)
         if message == "refused":
             return False, message

@@ -172,12 +172,12 @@ SLENDER: Changes = {
     "numerics.step_h": 2e-4,
 }
 # A free end that a plane pushes along the axis with p (1 - nu_A) W buckles beyond pi/2 sqrt(E_A W^3/12/(p (1 - nu_A) W))
-# = 0.90 mm; growing tissue, which yields, before that.
+# = 0.90 mm. Growing tissue yields: pressed for hours, it folds at any length.
 
 
-def slender(length_mm: float) -> Changes:
-    """A root three cells wide and a little bent that grows onto a smooth plane 0.01 mm away."""
-    return {**SLENDER, "root.length_mm": length_mm, "obstacle": [plane(length_mm + 0.01, 90.0, friction=0.0)]}
+def slender(length_mm: float, friction: float) -> Changes:
+    """A root three cells wide and a little bent that grows onto a plane 0.01 mm away."""
+    return {**SLENDER, "root.length_mm": length_mm, "obstacle": [plane(length_mm + 0.01, 90.0, friction=friction)]}
 
 
 def cases() -> list[Case]:
@@ -217,7 +217,7 @@ def cases() -> list[Case]:
         Case("curved", "bent to a radius of 0.2 mm", {"root.curvature_per_mm": 5.0}, 2.0, 20.0),
         Case("head_on", "grows straight onto a wall", in_contact(plane(0.62, 90.0)), 0.6, 4.0,
              {"contact_N": (0.05, 0.05)}, restart=True),
-        Case("glancing", "meets a wall at 15 degrees", in_contact(plane(0.62, 15.0, -0.08)), 1.0, 6.0,
+        Case("glancing", "meets a wall at 15 degrees", in_contact(plane(0.62, 15.0, -0.08)), 1.4, 6.0,
              {"contact_N": (1e-4, 1e-4)}),
         Case("corner_on_axis", "grows onto the sharp corner of a box", in_contact(corner(0.62, 0.0)), 0.6, 4.0,
              {"contact_N": (0.01, 0.01)}),
@@ -226,10 +226,10 @@ def cases() -> list[Case]:
         Case("appears_in_contact", "a wall that reaches a tenth of a cell into the tip at the start",
              in_contact(plane(0.598, 90.0)), 0.3, 4.0, {"contact_N": (0.05, 0.05)},
              stress_MPa=1020.0 * 0.002 / 0.6),
-        Case("below_euler", "long and thin onto a wall, shorter than Euler's length", slender(0.45), 1.0, 2.0,
-             {"contact_N": (0.02, 0.02)}),
-        Case("above_euler", "long and thin onto a wall, twice Euler's length", slender(1.8), 1.5, 6.0,
-             {"bend_mm": (0.03, 0.1)}, restart=True),
+        Case("below_euler", "long and thin onto a wall, half of Euler's length", slender(0.45, 0.2), 0.6, 1.0,
+             {"contact_N": (0.05, 0.05)}),
+        Case("above_euler", "long and thin onto a wall, twice Euler's length", slender(1.8, 0.0), 1.5, 6.0,
+             {"bend_mm": (0.02, 0.1)}, restart=True),
         Case("generations_8", "8 generations of division: the very tip grows, all tissue descends from its few cells",
              {**moduli(15.0), "growth.x_g_mm": -0.1}, 5.0, 18.0, {"generation": (2, 8)}),
         Case("hours_100", "100 h, at half the base's rate", {"growth.lambda0_ug_mm3_h": 2.17e5}, 6.0, 100.0,
