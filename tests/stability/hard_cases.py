@@ -86,6 +86,8 @@ class Case:
     long_h: float
     reaches: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     stress_MPa: float | None = None  # that the case itself calls for, where it is more than p
+    twin: tuple[str, ...] | None = None  # runs against the plate of tests/stability/twin_soil.cpp, with these arguments
+    needs_yade: bool = False
     restart: bool = False  # also interrupted in the middle and resumed, in the tests
 
 
@@ -180,6 +182,20 @@ def slender(length_mm: float, friction: float) -> Changes:
     return {**SLENDER, "root.length_mm": length_mm, "obstacle": [plane(length_mm + 0.01, 90.0, friction=friction)]}
 
 
+# A root 6 across among some 50 grains of a third of its width, as scenarios/soil_tutorial.toml.
+GRAINS: Changes = {
+    "root.length_mm": 1.2,
+    "root.radius_mm": 0.3,
+    "root.cell_size_mm": 0.1,
+    "growth": {"lambda0_ug_mm3_h": 3.0e5, "x_g_mm": 0.3, "s_g_mm": 0.5, "c_g": -0.95},
+    "division": None,
+    "soil": {"box_from_mm": [0.4, -1.2], "box_to_mm": [2.6, 1.2], "walls": "mixed", "confining_pressure_MPa": 0.04,
+             "d_range_mm": [0.3, 0.4], "E_MPa": 250.0, "friction_deg": 30.0, "root_friction_deg": 20.0,
+             "contact": {"interval_h": 2e-3, "ramp_h": 0.005}},
+    "numerics.step_h": 2e-4,
+}  # fmt: skip
+
+
 def cases() -> list[Case]:
     """Every hard case."""
     free = {"root.base": "clamped"}
@@ -244,9 +260,15 @@ def cases() -> list[Case]:
         Case("microscopy_3d", "3D: 1500 irregular cells from a microscopy file, neighbours touch",
              {**SPACE, "root": {"cells_file": str(PROJECT / "scenarios" / "cells" / "root_tip.csv"), "tip_axis": "+x"}},
              0.05, 1.5),
+        Case("soil_arrested", "soil's plate arrests the root for 10 h", {"numerics.step_h": 1e-4}, 0.6, 10.5,
+             {"contact_N": (0.1, 0.1)}, twin=(), restart=True),
+        Case("soil_release", "soil's plate arrests the root for 0.4 h and lets go at once", {"numerics.step_h": 1e-4},
+             0.8, 4.0, {"contact_N": (0.1, 0.1), "stretch": (1.03, 1.4)}, twin=("--gone-at", "0.5")),
+        Case("soil_stiff", "YADE: grains 20 times as stiff as usual, root in contact from the start",
+             {**GRAINS, "soil.E_MPa": 5000.0}, 0.02, 0.1, {"contact_N": (1e-3, 0.01)}, needs_yade=True),
+        Case("soil_squeezed", "YADE: grains between the tip and a wall that stands still two grains ahead",
+             {**GRAINS, "soil.box_to_mm": [2.0, 1.2]}, 0.02, 0.1,
+             {"contact_N": (1e-3, 0.05)}, needs_yade=True),
+        Case("soil_servo", "YADE: servo walls on all sides of some 50 grains, at a tenth of the usual pressure",
+             {**GRAINS, "soil.walls": "servo", "soil.confining_pressure_MPa": 0.004}, 0.02, 0.1, needs_yade=True),
     ]  # fmt: skip
-
-
-def case_named(name: str) -> Case:
-    """A case by its name."""
-    return {case.name: case for case in cases()}[name]
