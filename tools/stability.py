@@ -55,13 +55,17 @@ def edges() -> list[Edge]:
     """The edges of the stable region of the base case."""
     rate_per_h = 0.40
     free = {**UNIFORM, "division": None}
+
+    def alike(ratio: float) -> Changes:
+        return {**UNIFORM, **moduli(ratio)}
+
     return [
         Edge("step", "h", "step, windows of 20 steps (default)", 1e-3, 0.5,
              lambda v: {"numerics.step_h": v}, lambda v: max(3.0, 120 * v), quick=True),
         Edge("step_window_1", "h", "step, windows of one step", 1e-3, 0.5,
              lambda v: {"numerics.step_h": v, "numerics.window_steps": 1}, lambda v: 3.0),
-        Edge("ratio_up", "-", "E_R/E_A, upwards", 1.0, 270.0, moduli, lambda v: 1.0, quick=True, of_ratio=True),
-        Edge("ratio_down", "-", "E_R/E_A, downwards", 1.0, 0.01, moduli, lambda v: 1.0, of_ratio=True),
+        Edge("ratio_up", "-", "E_R/E_A, upwards, all tissue grows alike", 1.0, 270.0, alike, lambda v: 1.0, quick=True, of_ratio=True),
+        Edge("ratio_down", "-", "E_R/E_A, downwards, all tissue grows alike", 1.0, 0.01, alike, lambda v: 1.0, of_ratio=True),
         Edge("stretch", "-", "stretch of all tissue, no division", 1.5, 100.0, lambda v: free, lambda v: log(v) / rate_per_h),
         Edge("stretch_division", "-", "stretch of all tissue, with division", 1.5, 30.0,
              lambda v: UNIFORM, lambda v: log(v) / rate_per_h),
@@ -132,8 +136,8 @@ class Runner:
         """Whether the base case is stable at this value of an edge's quantity, and the criterion that fails."""
         value = float(f"{value:.3g}")
         changes = edge.changes(value)
-        if scheme is PAPER and not edge.of_ratio:  # its law is hyperbolic only where E_R is near E_A
-            changes = {**changes, **moduli(1.0)}
+        if scheme is PAPER and not edge.of_ratio:  # its law is hyperbolic only where E_R is near E_A, and then a zone bulges
+            changes = {**UNIFORM, **changes, **moduli(1.0)}
         hours = edge.hours(value)
         case = Case(edge.name, edge.meaning, changes, hours, hours)
         folder, message = self.run(f"{edge.name}-{scheme.name}-{value:g}", scene_text(case, scheme, hours), hours)
@@ -219,7 +223,8 @@ def main() -> int:
         report.draw_map(case_rows, edge_rows, options.out / "stability.png")
         if not options.quick:
             report.draw_map(case_rows, edge_rows, PROJECT / "docs" / "images" / "stability.png")
-            report.write_page(case_rows, edge_rows, PROJECT / "docs" / "stability.md")
+            remarks = {case.name: case.remark for case in cases()}
+            report.write_page(case_rows, edge_rows, remarks, PROJECT / "docs" / "stability.md")
         elif options.record:
             report.write_rows(RECORDED, report.recorded_bounds(case_rows, edge_rows))
     except subprocess.CalledProcessError as error:

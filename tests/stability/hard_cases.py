@@ -88,6 +88,7 @@ class Case:
     stress_MPa: float | None = None  # that the case itself calls for, where it is more than p
     twin: tuple[str, ...] | None = None  # runs against the plate of tests/stability/twin_soil.cpp, with these arguments
     needs_yade: bool = False
+    remark: str = ""  # why it fails, where it does and is known
     restart: bool = False  # also interrupted in the middle and resumed, in the tests
 
 
@@ -227,7 +228,9 @@ def cases() -> list[Case]:
         Case("irregular", "volumes vary 10-fold, centres jittered by 0.3 of the spacing",
              {"root.size_variation": 0.82, "root.jitter": 0.3}, 2.0, 12.0, {"divisions": (20, 120)}, restart=True),
         Case("one_wide", "one cell wide", width(1), 2.0, 20.0, {"divisions": (3, 30)}),
-        Case("two_wide", "two cells wide", width(2), 2.0, 20.0, {"divisions": (6, 60)}),
+        Case("two_wide", "two cells wide", width(2), 2.0, 20.0, {"divisions": (6, 60)},
+             remark="the material axes of the two rows turn apart, by 14 degrees after 12 h, whatever the step, the gradient, "
+                    "the kernel's size or the non-affine control: two rows do not resolve shear. Use three cells across"),
         Case("three_wide", "three cells wide", width(3), 2.0, 20.0, {"divisions": (9, 90)}),
         Case("oblique_base", "base cut at 60 degrees", {"root.base_obliquity_deg": 60.0}, 2.0, 20.0),
         Case("curved", "bent to a radius of 0.2 mm", {"root.curvature_per_mm": 5.0}, 2.0, 20.0),
@@ -252,7 +255,7 @@ def cases() -> list[Case]:
              {"divisions": (20, 400)}),
         Case("base_3d", "3D: growth and division", SPACE, 2.0, 8.0, {"divisions": (30, 100)}, restart=True),
         Case("stretch_3d", "3D: all tissue stretched, cells divide",
-             {**UNIFORM, **SPACE, "root.length_mm": 0.12,
+             {**UNIFORM, **SPACE, "root.length_mm": 0.12, "root.cap": False,  # a round tip would become a spike of 2 x 2 cells
               "tissue.anisotropy": {"E_radial_max_MPa": 11900.0, "x_e_mm": 0.0, "s_e_per_mm": 0.0, "c_e": 1.0}},
              2.0, 5.76, {"stretch": (1.9, 8.0)}),
         Case("irregular_3d", "3D: volumes vary 10-fold, centres jittered by 0.3",
@@ -262,13 +265,12 @@ def cases() -> list[Case]:
              0.05, 1.5),
         Case("soil_arrested", "soil's plate arrests the root for 10 h", {"numerics.step_h": 1e-4}, 0.6, 10.5,
              {"contact_N": (0.1, 0.1)}, twin=(), restart=True),
-        Case("soil_release", "soil's plate arrests the root for 0.4 h and lets go at once", {"numerics.step_h": 1e-4},
-             0.8, 4.0, {"contact_N": (0.1, 0.1), "stretch": (1.03, 1.4)}, twin=("--gone-at", "0.5")),
+        Case("soil_release", "soil's plate arrests the root for 0.2 h and lets go at once", {"numerics.step_h": 1e-4},
+             0.6, 2.0, {"contact_N": (0.1, 0.1), "stretch": (1.03, 1.2)}, twin=("--gone-at", "0.35")),
         Case("soil_stiff", "YADE: grains 20 times as stiff as usual, root in contact from the start",
-             {**GRAINS, "soil.E_MPa": 5000.0}, 0.02, 0.1, {"contact_N": (1e-3, 0.01)}, needs_yade=True),
+             {**GRAINS, "soil.E_MPa": 5000.0}, 0.02, 0.5, {"contact_N": (1e-3, 0.01)}, needs_yade=True),
         Case("soil_squeezed", "YADE: grains between the tip and a wall that stands still two grains ahead",
-             {**GRAINS, "soil.box_to_mm": [2.0, 1.2]}, 0.02, 0.1,
-             {"contact_N": (1e-3, 0.05)}, needs_yade=True),
+             {**GRAINS, "soil.box_to_mm": [2.0, 1.2]}, 0.02, 0.5, {"contact_N": (1e-3, 0.05)}, needs_yade=True),
         Case("soil_servo", "YADE: servo walls on all sides of some 50 grains, at a tenth of the usual pressure",
-             {**GRAINS, "soil.walls": "servo", "soil.confining_pressure_MPa": 0.004}, 0.02, 0.1, needs_yade=True),
+             {**GRAINS, "soil.walls": "servo", "soil.confining_pressure_MPa": 0.004}, 0.02, 0.5, needs_yade=True),
     ]  # fmt: skip
