@@ -20,7 +20,8 @@ def quick(program_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a quick run: a minute of one core."""
     out = tmp_path_factory.mktemp("stability")
     command = [sys.executable, PROJECT / "tools" / "stability.py", "--quick", "--out", out, "--program", program_path]
-    done = subprocess.run(command, env={**os.environ, "OMP_NUM_THREADS": "1"}, capture_output=True, text=True)
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "ROOTSOIL_CACHE": str(out / "cache")}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
     assert (out / "edges.csv").is_file(), done.stdout + done.stderr
     return out
 

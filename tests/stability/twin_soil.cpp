@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `rootsoil run` and `version` with a soil of this process in the place of YADE, for hard cases: a stiff plate 0.01 mm beyond
-// the tip, which can let go.
+// `rootsoil run` and `version` with a soil of this process in the place of YADE, for hard cases: a stiff, rough plate 0.01 mm
+// beyond the tip, which can let go.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <limits>
@@ -14,7 +14,7 @@
 namespace rootsoil {
 namespace {
 
-constexpr double gap_mm = 0.01, stiffness_N_mm = 100.0;
+constexpr double gap_mm = 0.01, stiffness_N_mm = 100.0, friction = 0.5;
 
 /// A plate that is gone from one time on.
 class ReleasingPlate final : public SoilPort {
@@ -63,6 +63,7 @@ int command_line(int argc, char** argv) {
     plate.point_mm = {scene.root.length_mm + gap_mm, 0.0, 0.0};
     plate.outward = {-1.0, 0.0, 0.0};
     plate.stiffness_N_mm = stiffness_N_mm;
+    plate.friction = friction;
     Soil soil;
     soil.port = std::make_unique<ReleasingPlate>(plate, gone_at_h);
     soil.contact.stiffness_predictor = true;
