@@ -22,6 +22,19 @@ void moduli(const Stiffness<Dim>& k, Mat<Dim>& normal, Mat<Dim>& shear) {
   }
 }
 
+/// The diagonal d of which diag(d) - m is positive semidefinite, for positive semidefinite m: of 2 m_ab x_a x_b the large
+/// entry takes as much of its own size as the small one. m itself where it is diagonal: where neighbours' frames are alike.
+template <int Dim>
+Vec<Dim> diagonal_bound(const Mat<Dim>& m) {
+  Vec<Dim> d = m.diagonal();
+  for (int a = 0; a < Dim; ++a) {
+    for (int b = 0; b < Dim; ++b) {
+      if (a != b && m(b, b) > 0.0) d[a] += std::abs(m(a, b)) * std::sqrt(m(a, a) / m(b, b));
+    }
+  }
+  return d;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -47,7 +60,7 @@ std::vector<Vec<Dim>> bound_stiffness(const Tissue<Dim>& tissue, const PairTerms
   // A unit displacement with weights h strains the cell; row a of its share of K is at most (rows h)_a:
   // normal strain h_a against C_ab S_b, shear h_b against G_ab (S_a + S_b), S the sums of magnitudes.
   std::vector<Mat<Dim>> rows(n);
-  std::vector<Vec<Dim>> stiffness(n);
+  std::vector<Mat<Dim>> bound(n);  // in the material frame of the cell that is displaced
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < n; ++i) {
     const Vec<Dim> self = own[i].cwiseAbs();
@@ -58,20 +71,26 @@ std::vector<Vec<Dim>> bound_stiffness(const Tissue<Dim>& tissue, const PairTerms
       for (int b = 0; b < Dim; ++b) rows[i](a, b) = a == b ? normal.row(a).dot(s) : shear(a, b) * (s[a] + s[b]);
     }
     rows[i] *= cells.volume[i];
-    stiffness[i] = rows[i] * self;
+    bound[i] = Vec<Dim>(rows[i] * self).asDiagonal();
   }
   for_each_block(tissue.pairs, [&](const PairBlock& block) {
     for (std::int64_t k = block.first_pair; k < block.last_pair; ++k) {
-      const auto [i, j] = pairs[k];
-      stiffness[j] += rows[i] * (cells.frame[i].transpose() * tissue.gradients[k].at_i).cwiseAbs();
-      stiffness[i] += rows[j] * (cells.frame[j].transpose() * tissue.gradients[k].at_j).cwiseAbs();
+      const auto [i, j] = tissue.pairs.pairs[k];
+      const Vec<Dim> strains_i = rows[i] * (cells.frame[i].transpose() * tissue.gradients[k].at_i).cwiseAbs();
+      const Vec<Dim> strains_j = rows[j] * (cells.frame[j].transpose() * tissue.gradients[k].at_j).cwiseAbs();
+      const Mat<Dim> turn = cells.frame[i].transpose() * cells.frame[j];
+      bound[j] += turn.transpose() * strains_i.asDiagonal() * turn;
+      bound[i] += turn * strains_j.asDiagonal() * turn.transpose();
       if (terms.non_affine) {
         const double penalty = 4.0 * terms.non_affine->stiffness_MPa * terms.weight[k];
-        stiffness[i].array() += penalty;
-        stiffness[j].array() += penalty;
+        bound[i].diagonal().array() += penalty;
+        bound[j].diagonal().array() += penalty;
       }
     }
   });
+  std::vector<Vec<Dim>> stiffness(n);
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < n; ++i) stiffness[i] = diagonal_bound<Dim>(bound[i]);
   return stiffness;
 }
 

@@ -53,3 +53,34 @@ def test_quiet_does_not_hide_it(program: Program):
     """The message comes with --quiet, too."""
     done = program("run", program.scene(BREAKS), "--out", "out", "--quiet")
     assert done.status == UNPHYSICAL and done.err.startswith("rootsoil: the tissue broke")
+
+
+def test_a_step_too_large_for_the_growth(program: Program):
+    """Stops as well, names the cell, and no cell is gone: daughters' shares still add up to the cells at the start."""
+    fast = replaced(FULL, "lambda0_ug_mm3_h = 1.3e6", "lambda0_ug_mm3_h = 1.3e7")
+    scene, out = program.scene(replaced(fast, "step_h = 0.001", "step_h = 0.05")), program.folder / "out"
+    done = program("run", scene, "--out", out)
+    assert done.status == UNPHYSICAL, done.err
+    assert re.search(r"broke at t = \S+ h: cell \d+ changed its volume .*position .*distance from the tip", done.err)
+    assert "a step too large for the growth rate" in done.err
+    for frame in frames(out):
+        assert np.sum(0.5 ** frame["generation"]) == frames(out)[0]["cells"]
+    assert np.all(np.isfinite(checkpoint(out)["cells/position"]))
+
+
+def test_an_unstable_law_is_refused_before_anything_starts(program: Program):
+    """Not hyperbolic: exit status 2, with the place along the root, what is allowed and what to do; no folder is made."""
+    law = replaced(FULL, "1020.0", '1020.0\nlaw = "pressure_deviator"')
+    done = program("run", program.scene(law), "--out", "out")
+    assert done.status == 2
+    assert re.search(r"tissue.law: the law is not hyperbolic \S+ mm from the tip", done.err)
+    assert "E_R/E_A below about 4" in done.err and "scene.allow_unstable = true" in done.err
+    assert not (program.folder / "out").exists()
+
+
+def test_a_step_that_is_none_is_refused(program: Program):
+    """Zero, negative or beyond an hour: exit status 2. Any other step is stable, since inertia follows it."""
+    for step in ("0.0", "-0.001", "3.6"):
+        done = program("run", program.scene(replaced(FULL, "step_h = 0.001", f"step_h = {step}")), "--out", "out")
+        assert done.status == 2 and "numerics.step_h" in done.err, done.err
+        assert not (program.folder / "out").exists()

@@ -31,7 +31,7 @@ struct Terms {
 };
 
 /// How the material axes lie in the block.
-enum class Axes { along_x, all_turned_alike, bent };
+enum class Axes { along_x, all_turned_alike, bent, folded };
 
 template <int Dim>
 struct SmallBlock {
@@ -52,6 +52,8 @@ struct SmallBlock {
       if (axes == Axes::all_turned_alike) tissue.cells.frame[i] = turned;
       // a radius of curvature of two block lengths
       if (axes == Axes::bent) tissue.cells.frame[i] = test::plane_rotation<Dim>(5.0 * tissue.cells.position[i][0]);
+      // as in a sharp fold: 0.6 rad from a cell to the next
+      if (axes == Axes::folded) tissue.cells.frame[i] = test::plane_rotation<Dim>(60.0 * tissue.cells.position[i][0]);
       tissue.window_index[i] = -1;
       if (!terms.non_affine) continue;
       (*terms.non_affine->start_position)[i] = tissue.cells.position[i];
@@ -130,7 +132,7 @@ TYPED_TEST_SUITE(StabilityBound, test::BothDimensions, test::DimensionName);
 TYPED_TEST(StabilityBound, LiesAboveTheLargestEigenvalueOfTheTrueStiffness) {
   constexpr int dim = TypeParam::value;
   for (const double modulus : moduli) {
-    for (const Axes axes : {Axes::along_x, Axes::all_turned_alike, Axes::bent}) {
+    for (const Axes axes : {Axes::along_x, Axes::all_turned_alike, Axes::bent, Axes::folded}) {
       for (const GradientMode gradient : {GradientMode::linear, GradientMode::quadratic_at_surface}) {
         SmallBlock<dim> block(1, modulus, axes, gradient);
         for (const InertiaMode mode : {InertiaMode::tensor, InertiaMode::scalar}) {

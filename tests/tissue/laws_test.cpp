@@ -106,6 +106,19 @@ TYPED_TEST(ElasticGrowth, GrowsSteadilyAtTheRateOfTheClosedForm) {
   EXPECT_LT((stress - isotropic<dim>(p)).norm(), 1e-13);
 }
 
+TYPED_TEST(ElasticGrowth, DoesNotGrowBackUnderNegativePressure) {
+  constexpr int dim = TypeParam::value;
+  const Stiffness<dim> k = stiffness<dim>(with_radial_modulus(15000.0));
+  for (const double p : {0.0, -0.8}) {
+    const AxialRadial rate = growth_rate<dim>(k, p, 400.0);
+    EXPECT_EQ(rate.axial, 0.0);
+    EXPECT_EQ(rate.radial, 0.0);
+    Voigt<dim> stress = isotropic<dim>(p);
+    EXPECT_EQ(elastic_growth_step<dim>(k, Voigt<dim>(Voigt<dim>::Zero()), 0.4, stress), 0.0);
+    EXPECT_EQ(stress, isotropic<dim>(p));
+  }
+}
+
 TYPED_TEST(ElasticGrowth, NeverLosesMass) {
   constexpr int dim = TypeParam::value;
   const Stiffness<dim> k = stiffness<dim>(with_radial_modulus(1020.0));
