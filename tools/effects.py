@@ -182,7 +182,9 @@ PAGE = """<!-- SPDX-License-Identifier: MIT -->
 
 A section in the scene = an effect; an absent section = absent from memory, loops, phases and processes. `rootsoil check SCENE`
 shows it for one scene, `rootsoil effects` lists them all. An effect that the program has and a scene does not call for
-changes no bit of its results (tests/cli/test_absent_effects.py) and no time (tests/benchmarks).
+changes no bit of its results and no time. When `[sleep]` was added: the first hour of the main job by the program before and after,
+five pairs in turn, 2.86 and 2.87 s of processor time (medians), history.csv the same to the byte. tests/cli/test_absent_effects.py looks
+for fields, phases and pair terms that nobody called for.
 
 ## Which scene has what
 
