@@ -60,21 +60,21 @@ def edges() -> list[Edge]:
         return {**UNIFORM, **moduli(ratio)}
 
     return [
-        Edge("step", "h", "step, windows of 20 steps (default)", 1e-3, 0.5,
+        Edge("step", "h", "step, windows of 20 steps", 1e-3, 0.5,
              lambda v: {"numerics.step_h": v}, lambda v: max(3.0, 120 * v), quick=True),
         Edge("step_window_1", "h", "step, windows of one step", 1e-3, 0.5,
              lambda v: {"numerics.step_h": v, "numerics.window_steps": 1}, lambda v: 3.0),
-        Edge("ratio_up", "-", "E_R/E_A, upwards, all tissue grows alike", 1.0, 270.0, alike, lambda v: 1.0, quick=True, of_ratio=True),
-        Edge("ratio_down", "-", "E_R/E_A, downwards, all tissue grows alike", 1.0, 0.01, alike, lambda v: 1.0, of_ratio=True),
+        Edge("ratio_up", "-", "E_R/E_A, upwards", 1.0, 270.0, alike, lambda v: 1.0, quick=True, of_ratio=True),
+        Edge("ratio_down", "-", "E_R/E_A, downwards", 1.0, 0.01, alike, lambda v: 1.0, of_ratio=True),
         Edge("stretch", "-", "stretch of all tissue, no division", 1.5, 100.0, lambda v: free, lambda v: log(v) / rate_per_h),
         Edge("stretch_division", "-", "stretch of all tissue, with division", 1.5, 30.0,
              lambda v: UNIFORM, lambda v: log(v) / rate_per_h),
-        Edge("lambda_up", "-", "lambda0 over the base's, step chosen by the program", 1.0, 1e4,
+        Edge("lambda_up", "-", "lambda0, step from the program", 1.0, 1e4,
              lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v}, lambda v: 2.0 / v),
-        Edge("lambda_up_fixed_step", "-", "lambda0 over the base's, step kept at 0.001 h", 1.0, 1e3,
+        Edge("lambda_up_fixed_step", "-", "lambda0, step kept at 0.001 h", 1.0, 1e3,
              lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v, "numerics.step_h": 1e-3},
              lambda v: max(2.0 / v, 0.12)),
-        Edge("lambda_down", "-", "lambda0 over the base's, downwards", 1.0, 1e-4,
+        Edge("lambda_down", "-", "lambda0, downwards", 1.0, 1e-4,
              lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v}, lambda v: 2.0),
     ]  # fmt: skip
 
