@@ -207,7 +207,7 @@ def edge_panel(axes: Axes, edges: list[EdgeRow]) -> None:
         axes.text(max(times, 1.0) * 1.15, y, f"{row.good:.3g}{unit}{end}", size=5, va="center")
     axes.set_xscale("log")
     axes.set(xlim=(1.0, 3e5), ylim=(len(names) - 0.4, -0.6), xlabel="stable up to this many times the start")
-    labels = [f"{meaning[name].meaning}\nfrom {meaning[name].start:g}" for name in names]
+    labels = ["{}\nfrom {:g}".format(meaning[name].meaning.replace(", ", ",\n"), meaning[name].start) for name in names]
     axes.set_yticks(range(len(names)), labels)
     axes.tick_params(axis="y", length=0, labelsize=6)
     handles = [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in colours.values()]
@@ -252,7 +252,7 @@ everywhere at E_R/E_A = 15, and breaks there within a few tenths of an hour.
 - **Contact.** Keep the tip's way in a step below 1/1000 of a cell, as these cases do. Growing tissue yields: pressed for hours it
   folds, and where it folds stress is concentrated.
 - **Not in the model.** A root that meets itself does not notice: a root of very unequal cells (`irregular`), which curls, does so
-  after 16 h, one of 10 mm and more without anything that steers it after 90 h, and both break then.
+  after 16 h and breaks then; so does one of 10 mm and more without anything that steers it after 90 h, whose stress gets noisy then.
 
 ## Criteria
 
