@@ -36,6 +36,7 @@ PRESSURES_MPA = (0.01, 0.02, 0.035, 0.05)
 MODULI_MPA = (1600.0, 400.0, 200.0, 100.0, 50.0)
 SEEDS = 3
 SETTLED_FROM = 0.25  # of the run: before, forces rise
+SHALLOW = 0.3  # of the depth that the stiffest root reaches: the penetrometer counts from there
 DEPTHS_MM = (1.2, 2.6)  # over which the penetrometer's resistance is averaged
 SOIL_SECTIONS = ("soil", "soil.contact", "soil.obstacle", "penetrometer")
 SCENES = {"pressure": "soil_tutorial", "flexibility": "soil_buckling"}
@@ -267,8 +268,8 @@ def flexibility_series(options: argparse.Namespace, until_h: float) -> str:
     ]
     passages = [measure_passage(run) for run in runs]
     stiffest = runs[int(np.argmax([p.E_axial_MPa for p in passages]))].history()
-    reached = stiffest["tip_x_mm"] - float(scene["soil"]["box_from_mm"][0])
-    depths = (max(0.0, float(np.interp(SETTLED_FROM * until_h, stiffest["time_h"], reached))), float(reached[-1]))
+    reached_mm = float(stiffest["tip_x_mm"][-1]) - float(scene["soil"]["box_from_mm"][0])
+    depths = (SHALLOW * reached_mm, reached_mm)
     width = 2.0 * float(scene["root"]["radius_mm"])
     probe = series.penetrometer("probe", probe_settings(scene, passages[0].free_speed, options.seeds, depths))
     rigid = resistance_MPa(probe) * (width if int(scene["scene"].get("dimension", 2)) == 2 else np.pi * width**2 / 4.0)
