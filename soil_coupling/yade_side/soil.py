@@ -231,18 +231,14 @@ class Soil:
         self.critical_step = self._substep()
         self.grain_count = len(grains())
         self.solid = solid_volume(self.recipe)
-        self._list_markers()
+        self.row_ids: list[int] | None = None  # rows are listed anew in the next interval
 
     # ---- markers --------------------------------------------------------------------------------
-
-    def _list_markers(self) -> None:
-        self.states = {marker: O.bodies[slot].state for marker, slot in self.slots.items()}
-        self.row_ids: list[int] | None = None
 
     def _list_rows(self, ids: list[int]) -> None:
         """A row for each marker, then walls and obstacles: their bodies and where they are."""
         self.row_ids = ids
-        self.row_states = [self.states[m] for m in ids]
+        self.row_states = [O.bodies[self.slots[m]].state for m in ids]
         self.row_position = np.array([[p[0], p[1], p[2]] for p in (s.pos for s in self.row_states)]).reshape(-1, 3)
         fixed = self.wall_ids[: 2 * self.recipe["dimension"]] + self.obstacle_ids
         self.row_slots = [self.slots[m] for m in ids] + fixed
@@ -263,7 +259,6 @@ class Soil:
         # append never uses an id again: after 1e5 markers there would be 1e5 holes
         slot = O.bodies.insertAtId(body, self.free_slots.pop()) if self.free_slots else O.bodies.append(body)
         self.slots[marker] = slot
-        self.states[marker] = O.bodies[slot].state
 
     def _update_markers(self, ids: list[int], start: np.ndarray, radius: np.ndarray) -> None:
         """Erases, inserts, changes radii: in this order."""
@@ -271,7 +266,6 @@ class Soil:
             present = set(ids)
             for marker in [m for m in self.slots if m not in present]:
                 slot = self.slots.pop(marker)
-                del self.states[marker]
                 O.bodies.erase(slot)
                 self.free_slots.append(slot)
             for k, marker in enumerate(ids):
