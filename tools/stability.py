@@ -116,7 +116,7 @@ class Runner:
         text = scene_text(case, scheme, hours)
         folder, message = self.run(name, text, hours, self.series(name, text, case.twin))
         reaches = {what: both[long] for what, both in case.reaches.items()}
-        return judge(folder, hours, reaches, case.stress_MPa), message
+        return judge(folder, hours, reaches, case.stress_MPa, case.neighbours), message
 
     def restart(self, case: Case) -> Finding:
         """The short run, interrupted in the middle and resumed, against the one that was not."""

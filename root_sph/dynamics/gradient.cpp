@@ -54,15 +54,17 @@ Mat<Dim> guarded_inverse(const Mat<Dim>& m, bool& degenerate) {
 }
 
 /// First Dim rows of the inverse of the scaled moment matrix; false when it is ill-conditioned.
-/// `trust` in [0, 1] fades to 0 towards ill-conditioning, so that a fit comes and goes smoothly.
+/// `trust` in [0, 1] fades to 0 towards ill-conditioning, so that a fit comes and goes smoothly. The smallest pivot is the part
+/// of a monomial that the others leave unexplained: 0.09 to 0.13 on a lattice's surfaces, edges and corners, nothing in a root
+/// of two rows, whose small waves would otherwise determine the curvature across it (docs/decisions/0017).
 template <int Dim>
 Eigen::Matrix<double, Dim, basis_size<Dim>> quadratic_fit(
     const Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>& moment, double& trust) {
-  constexpr double smallest_pivot = 1e-3;
+  constexpr double no_trust = 0.02, full_trust = 0.04;
   const Basis<Dim> scale = moment.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::LDLT<Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>> factors(
       Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>(scale.asDiagonal() * moment * scale.asDiagonal()));
-  trust = smooth_step(factors.vectorD().minCoeff(), smallest_pivot, 4.0 * smallest_pivot);
+  trust = smooth_step(factors.vectorD().minCoeff(), no_trust, full_trust);
   if (trust <= 0.0) return Eigen::Matrix<double, Dim, basis_size<Dim>>::Zero();
   Eigen::Matrix<double, basis_size<Dim>, Dim> unit = Eigen::Matrix<double, basis_size<Dim>, Dim>::Zero();
   unit.template topRows<Dim>().setIdentity();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -144,6 +145,23 @@ TYPED_TEST(Gradient, UsesTheQuadraticFitAtSurfacesOnly) {
     const bool middle = (x.template tail<dim - 1>().cwiseAbs().array() < 0.006).all();
     if (!middle || x[0] < face - 1e-9) continue;
     EXPECT_NEAR(found[i](0, 0), 2.0 * x[0], 1e-10);
+  }
+}
+
+/// Waves of a tenth of the spacing would determine the curvature across the rows, badly (docs/decisions/0017).
+TEST(QuadraticFit, IsNotMadeOfTwoWavyRows) {
+  constexpr double spacing_mm = 0.01;
+  Cloud<2> rows;
+  for (int k = 0; k < 30; ++k) {
+    const double width = spacing_mm * (1.0 + 0.1 * std::sin(0.9 * k));
+    for (const double side : {-0.5, 0.5}) {
+      rows.add({spacing_mm * k, side * width}, Vec<2>::Constant(spacing_mm), Mat<2>::Identity());
+    }
+  }
+  for (const GradientMode mode : {GradientMode::quadratic, GradientMode::quadratic_at_surface}) {
+    GradientReport report;
+    gradients_of<2>(rows, mode, 1.5, [](const Vec<2>& x) { return x; }, report);
+    EXPECT_EQ(report.quadratic, 0);
   }
 }
 

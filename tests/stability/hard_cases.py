@@ -86,6 +86,7 @@ class Case:
     long_h: float
     reaches: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     stress_MPa: float | None = None  # that the case itself calls for, where it is more than p
+    neighbours: float | None = None  # that are enough, where 6 (3D: 12) are not to be had
     twin: tuple[str, ...] | None = None  # runs against the plate of tests/stability/twin_soil.cpp, with these arguments
     needs_yade: bool = False
     remark: str = ""  # why it fails, where it does and is known
@@ -229,8 +230,7 @@ def cases() -> list[Case]:
              {"root.size_variation": 0.82, "root.jitter": 0.3}, 2.0, 12.0, {"divisions": (20, 120)}, restart=True),
         Case("one_wide", "one cell wide", width(1), 2.0, 20.0, {"divisions": (3, 30)}),
         Case("two_wide", "two cells wide", width(2), 2.0, 20.0, {"divisions": (6, 60)},
-             remark="the material axes of the two rows turn apart, by 14 degrees after 12 h, whatever the step, the gradient, "
-                    "the kernel's size or the non-affine control: two rows do not resolve shear. Use three cells across"),
+             neighbours=5.0),  # a corner's on the lattice: two in its row, three in the other
         Case("three_wide", "three cells wide", width(3), 2.0, 20.0, {"divisions": (9, 90)}),
         Case("oblique_base", "base cut at 60 degrees", {"root.base_obliquity_deg": 60.0}, 2.0, 20.0),
         Case("curved", "bent to a radius of 0.2 mm", {"root.curvature_per_mm": 5.0}, 2.0, 20.0),
@@ -242,7 +242,9 @@ def cases() -> list[Case]:
              {"contact_N": (0.01, 0.01)}),
         Case("corner_beside_axis", "the corner lies a cell beside the axis", in_contact(corner(0.62, 0.02)), 0.6, 4.0,
              {"contact_N": (1e-3, 1e-3)},
-             remark="the corner presses the tip aside, the growth zone folds, and stress is concentrated at both"),
+             remark="the corner presses the tip aside and the growth zone folds. Tissue there yields in tension only, so that one "
+                    "compressed cell carries what its neighbours do not: 0.52 to 0.86 with any gradient, eta, penalty or step, "
+                    "0.59 with cells of half the size"),
         Case("appears_in_contact", "a wall that reaches a tenth of a cell into the tip at the start",
              in_contact(plane(0.598, 90.0)), 0.3, 4.0, {"contact_N": (0.05, 0.05)},
              stress_MPa=1020.0 * 0.002 / 0.6),
@@ -266,7 +268,8 @@ def cases() -> list[Case]:
              0.05, 1.5),
         Case("soil_arrested", "soil's plate arrests the root for 10 h", {"numerics.step_h": 1e-4}, 0.6, 10.5,
              {"contact_N": (0.1, 0.1)}, twin=(), restart=True,
-             remark="quiet for 9 h (0.33); then the growth zone, which yields, begins to fold, and stress is concentrated there"),
+             remark="0.34 until 9.75 h; then the growth zone, which yields, folds, and compressed cells carry what those that "
+                    "yield do not: 0.73 with cells of half the size"),
         Case("soil_release", "soil's plate arrests the root for 0.2 h and lets go at once", {"numerics.step_h": 1e-4},
              0.6, 2.0, {"contact_N": (0.1, 0.1), "stretch": (1.03, 1.2)}, twin=("--gone-at", "0.35")),
         Case("soil_stiff", "YADE: grains 20 times as stiff as usual, root in contact from the start",

@@ -117,6 +117,7 @@ def test_neighbours_that_were_never_there_are_not_missed():
     assert criteria.neighbours_kept([first, later], 2) == pytest.approx(1.5)
     later.fields["neighbours"][5] = 5
     assert criteria.neighbours_kept([first, later], 2) == pytest.approx(5 / 6)
+    assert criteria.neighbours_kept([first, later], 2, enough=5.0) == pytest.approx(1.0)
 
 
 def test_margins():

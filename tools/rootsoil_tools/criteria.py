@@ -151,13 +151,13 @@ def cells_kept(frame: Frame, cells_start: int) -> float:
     return 1.0 if found == cells_start else min(found, cells_start) / max(found, cells_start) * (1.0 - 1e-9)
 
 
-def neighbours_kept(frames: list[Frame], dimension: int) -> float:
+def neighbours_kept(frames: list[Frame], dimension: int, enough: float | None = None) -> float:
     """Fewest neighbours over what a cell must keep, in all but the first of the frames.
 
-    A cell must keep 6 (3D: 12); one that began with fewer, itself or its nearest known ancestor, half of those. No cell counts
-    as having begun with more than most cells of the root.
+    A cell must keep `enough`, 6 (3D: 12) by default; one that began with fewer, itself or its nearest known ancestor, half of
+    those. No cell counts as having begun with more than most cells of the root.
     """
-    enough = 6.0 if dimension == 2 else 12.0
+    enough = enough or (6.0 if dimension == 2 else 12.0)
     usual = float(np.median(frames[0]["neighbours"]))
     began: dict[int, float] = {}
     worst = np.inf
@@ -182,8 +182,11 @@ def finite_part(frames: list[Frame]) -> float:
     return float(np.mean(np.concatenate([part.ravel() for part in finite])))
 
 
-def measures(folder: Path, hours: float, stress_MPa: float | None) -> Iterator[tuple[Criterion, float]]:
-    """Every general criterion's number, the worst over all frames of the run. Stresses relative to p or to stress_MPa."""
+def measures(folder: Path, hours: float, stress_MPa: float | None, neighbours: float | None) -> Iterator[tuple[Criterion, float]]:
+    """Every general criterion's number, the worst over all frames of the run. Stresses relative to p or to stress_MPa.
+
+    `neighbours`: as many are enough, where 6 (3D: 12) are not to be had.
+    """
     run, summary = Run(folder), read_summary(folder)
     history, d = run.history(), run.dimension
     frames = [run.frame(k) for k in range(len(run.times_h))]
@@ -197,7 +200,7 @@ def measures(folder: Path, hours: float, stress_MPa: float | None) -> Iterator[t
     yield MOMENTUM, float(summary["momentum_residual"])
     yield CELLS_LOST, min(cells_kept(frame, int(summary["cells_start"])) for frame in frames)
     if len(frames) > 2:
-        yield NEIGHBOURS, neighbours_kept(frames[1:], d)  # at the start nobody has looked for neighbours
+        yield NEIGHBOURS, neighbours_kept(frames[1:], d, neighbours)  # at the start nobody has looked for neighbours
     worst = np.zeros(4)
     for frame, ratio in zip(frames, history["kinetic_over_elastic"]):
         worst = np.maximum(worst, frame_measures(frame, d, p, float(ratio)))
@@ -234,10 +237,12 @@ def reached_numbers(folder: Path) -> dict[str, float]:
     }
 
 
-def judge(folder: Path, hours: float, reaches: Mapping[str, float], stress_MPa: float | None = None) -> list[Finding]:
+def judge(
+    folder: Path, hours: float, reaches: Mapping[str, float], stress_MPa: float | None = None, neighbours: float | None = None
+) -> list[Finding]:
     """All findings of a run that should last `hours` and come to `reaches`."""
     try:
-        findings = [Finding(criterion, value) for criterion, value in measures(folder, hours, stress_MPa)]
+        findings = [Finding(criterion, value) for criterion, value in measures(folder, hours, stress_MPa, neighbours)]
         numbers = reached_numbers(folder)
     except RunError:  # it wrote nothing
         return [Finding(FINISHED, 0.0)]
