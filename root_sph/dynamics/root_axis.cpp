@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
 
 namespace rootsoil {
 namespace {
@@ -28,36 +30,37 @@ double half_extent(const Mat<Dim>& shape, const Vec<Dim>& direction) {
   return std::sqrt(direction.dot(shape.inverse() * direction));
 }
 
+/// Mean diameter of tissue that reaches from the tip to `furthest_mm`: 2D volumes are areas.
+template <int Dim>
+double mean_diameter(std::span<const double> volumes, double furthest_mm) {
+  const double section = std::accumulate(volumes.begin(), volumes.end(), 0.0) / furthest_mm;
+  return Dim == 2 ? section : std::sqrt(4.0 * section / std::numbers::pi);
+}
+
 std::size_t bin_of(double s_mm, double width_mm) { return static_cast<std::size_t>(std::max(0.0, s_mm / width_mm)); }
 
 }  // namespace
 
 template <int Dim>
 void RootAxis<Dim>::start(Tissue<Dim>& tissue) {
-  double volume = 0.0, length = 0.0;
-  for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
-    volume += tissue.cells.volume[i];
-    length = std::max(length, tissue.cells.distance_to_tip[i]);
-  }
-  const double section = volume / length;
-  const double diameter = Dim == 2 ? section : std::sqrt(4.0 * section / std::numbers::pi);
-  bin_mm_ = 0.25 * diameter;
+  const auto distances = tissue.cells.active(tissue.cells.distance_to_tip);
+  const double furthest = *std::max_element(distances.begin(), distances.end());
+  bin_mm_ = 0.25 * mean_diameter<Dim>(tissue.cells.active(tissue.cells.volume), furthest);
   anchor(tissue);
 }
 
 template <int Dim>
 void RootAxis<Dim>::anchor(Tissue<Dim>& tissue) {
   auto& cells = tissue.cells;
-  // Slices wide enough for many cells: two of the longest cells, at least a diameter.
-  double width = 4.0 * bin_mm_;
+  double furthest = 0.0;
+  for (const double s : cells.active(cells.distance_to_tip)) furthest = std::max(furthest, s);
+  // Slices wide enough for many cells of both sides: two of the longest cells, at least a diameter of the root as it is now.
   double longest = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     longest = std::max(longest, 2.0 * half_extent<Dim>(cells.shape[i], cells.frame[i].col(0)));
   }
-  width = std::max(width, 2.0 * longest);
+  const double width = std::max(mean_diameter<Dim>(cells.active(cells.volume), furthest), 2.0 * longest);
 
-  double furthest = 0.0;
-  for (const double s : cells.active(cells.distance_to_tip)) furthest = std::max(furthest, s);
   // the last, partial slice joins the one before it
   const std::size_t slices = std::max<std::size_t>(1, static_cast<std::size_t>(furthest / width));
   std::vector<Vec<Dim>> knot(slices, Vec<Dim>::Zero());
