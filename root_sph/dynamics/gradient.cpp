@@ -53,18 +53,19 @@ Mat<Dim> guarded_inverse(const Mat<Dim>& m, bool& degenerate) {
   return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-/// First Dim rows of the inverse of the scaled moment matrix; false when it is ill-conditioned.
-/// `trust` in [0, 1] fades to 0 towards ill-conditioning, so that a fit comes and goes smoothly. The smallest pivot is the part
-/// of a monomial that the others leave unexplained: 0.09 to 0.13 on a lattice's surfaces, edges and corners, nothing in a root
-/// of two rows, whose small waves would otherwise determine the curvature across it (docs/decisions/0017).
+/// First Dim rows of the inverse of the scaled moment matrix, with a ridge on the quadratic monomials: curvature is taken to be
+/// small unless the neighbours say otherwise, so that irregular ones, or two rows that wave, do not invent it
+/// (docs/decisions/0017). Linear fields stay exact. `trust` in [0, 1] fades to 0 where the neighbours do not span space.
 template <int Dim>
 Eigen::Matrix<double, Dim, basis_size<Dim>> quadratic_fit(
     const Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>& moment, double& trust) {
-  constexpr double no_trust = 0.02, full_trust = 0.04;
+  constexpr double smallest_pivot = 1e-3, ridge = 0.05;
+  using Moment = Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>;
   const Basis<Dim> scale = moment.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>> factors(
-      Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>(scale.asDiagonal() * moment * scale.asDiagonal()));
-  trust = smooth_step(factors.vectorD().minCoeff(), no_trust, full_trust);
+  Moment scaled = scale.asDiagonal() * moment * scale.asDiagonal();
+  scaled.diagonal().template tail<basis_size<Dim> - Dim>().array() += ridge;
+  const Eigen::LDLT<Moment> factors(scaled);
+  trust = smooth_step(factors.vectorD().minCoeff(), smallest_pivot, 4.0 * smallest_pivot);
   if (trust <= 0.0) return Eigen::Matrix<double, Dim, basis_size<Dim>>::Zero();
   Eigen::Matrix<double, basis_size<Dim>, Dim> unit = Eigen::Matrix<double, basis_size<Dim>, Dim>::Zero();
   unit.template topRows<Dim>().setIdentity();

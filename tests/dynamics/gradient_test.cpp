@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iostream>
 #include <vector>
 
 #include "tests/support/block.hpp"
@@ -98,7 +99,8 @@ TYPED_TEST(Gradient, OfAConstantFieldIsZeroInEveryMode) {
   }
 }
 
-TYPED_TEST(Gradient, OfTheQuadraticModeIsExactForQuadraticFields) {
+/// Not all of it: the ridge that keeps the fit well-conditioned leaves a part.
+TYPED_TEST(Gradient, OfTheQuadraticModeFollowsQuadraticFields) {
   constexpr int dim = TypeParam::value;
   Random random(5);
   for (const Cloud<dim>& cloud : irregular_blocks<dim>()) {
@@ -110,17 +112,24 @@ TYPED_TEST(Gradient, OfTheQuadraticModeIsExactForQuadraticFields) {
       for (int a = 0; a < dim; ++a) u[a] += x.dot(second[a] * x);
       return u;
     };
-    GradientReport report;
-    // a wide reach, so that corner cells have neighbours enough for a full quadratic fit
-    const auto found = gradients_of<dim>(cloud, GradientMode::quadratic, 2.5, field, report);
-    EXPECT_EQ(report.quadratic, static_cast<std::int64_t>(cloud.size()));
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      Mat<dim> exact = linear;
-      for (int a = 0; a < dim; ++a)
-        exact.row(a) += ((second[a] + second[a].transpose()) * cloud.position[i]).transpose();
-      // the moment matrices have condition numbers of about 1e3
-      EXPECT_LT((found[i] - exact).norm(), 1e-10 * exact.norm()) << "cell " << i;
-    }
+    const auto mean_square_error = [&](GradientMode mode) {
+      GradientReport report;
+      // a wide reach, so that corner cells have neighbours enough for a full quadratic fit
+      const auto found = gradients_of<dim>(cloud, mode, 2.5, field, report);
+      EXPECT_EQ(report.quadratic, mode == GradientMode::quadratic ? static_cast<std::int64_t>(cloud.size()) : 0);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        Mat<dim> exact = linear;
+        for (int a = 0; a < dim; ++a) {
+          exact.row(a) += ((second[a] + second[a].transpose()) * cloud.position[i]).transpose();
+        }
+        sum += (found[i] - exact).squaredNorm();
+      }
+      return sum;
+    };
+    const double left = std::sqrt(mean_square_error(GradientMode::quadratic) / mean_square_error(GradientMode::linear));
+    EXPECT_LT(left, 0.4);
+    std::cout << "  error, of the linear fit's   " << left << '\n';
   }
 }
 
@@ -132,24 +141,25 @@ TYPED_TEST(Gradient, UsesTheQuadraticFitAtSurfacesOnly) {
   const Cloud<dim> cloud = test::lattice<dim>(counts, 0.01, random);
   const auto field = [](const Vec<dim>& x) { return Vec<dim>(x[0] * x[0] * Vec<dim>::UnitX()); };
   GradientReport linear, surface, everywhere;
-  gradients_of<dim>(cloud, GradientMode::linear, 1.5, field, linear);
+  const auto crude = gradients_of<dim>(cloud, GradientMode::linear, 1.5, field, linear);
   const auto found = gradients_of<dim>(cloud, GradientMode::quadratic_at_surface, 1.5, field, surface);
   gradients_of<dim>(cloud, GradientMode::quadratic, 1.5, field, everywhere);
   EXPECT_EQ(linear.quadratic, 0);
   EXPECT_GT(surface.quadratic, 0);
   EXPECT_LT(surface.quadratic, everywhere.quadratic);
-  // the middle of a face sees the quadratic field exactly, although its neighbours are all on one side
+  // the middle of a face sees most of the quadratic field, although its neighbours are all on one side
   const double face = 0.5 * (counts[0] - 1) * 0.01;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec<dim>& x = cloud.position[i];
     const bool middle = (x.template tail<dim - 1>().cwiseAbs().array() < 0.006).all();
     if (!middle || x[0] < face - 1e-9) continue;
-    EXPECT_NEAR(found[i](0, 0), 2.0 * x[0], 1e-10);
+    EXPECT_LT(std::abs(found[i](0, 0) - 2.0 * x[0]), 0.5 * std::abs(crude[i](0, 0) - 2.0 * x[0]));
   }
 }
 
-/// Waves of a tenth of the spacing would determine the curvature across the rows, badly (docs/decisions/0017).
-TEST(QuadraticFit, IsNotMadeOfTwoWavyRows) {
+/// Two rows do not know the curvature across them; waves of a few per cent of the spacing must not decide it. Without a ridge
+/// they amplify what is not smooth 5.6-fold (docs/decisions/0017).
+TEST(QuadraticFit, OfTwoWavyRowsInventsNoCurvature) {
   constexpr double spacing_mm = 0.01;
   Cloud<2> rows;
   for (int k = 0; k < 30; ++k) {
@@ -158,11 +168,18 @@ TEST(QuadraticFit, IsNotMadeOfTwoWavyRows) {
       rows.add({spacing_mm * k, side * width}, Vec<2>::Constant(spacing_mm), Mat<2>::Identity());
     }
   }
-  for (const GradientMode mode : {GradientMode::quadratic, GradientMode::quadratic_at_surface}) {
+  const auto amplification = [&](GradientMode mode) {
+    Random random(11);
     GradientReport report;
-    gradients_of<2>(rows, mode, 1.5, [](const Vec<2>& x) { return x; }, report);
-    EXPECT_EQ(report.quadratic, 0);
-  }
+    const auto found = gradients_of<2>(
+        rows, mode, 1.5, [&](const Vec<2>&) { return Vec<2>(random.uniform(-1, 1), random.uniform(-1, 1)); }, report);
+    double sum = 0.0;
+    for (const Mat<2>& gradient : found) sum += gradient.squaredNorm();
+    return std::sqrt(sum);
+  };
+  const double ratio = amplification(GradientMode::quadratic) / amplification(GradientMode::linear);
+  std::cout << "  amplification, of the linear fit's   " << ratio << '\n';
+  EXPECT_LT(ratio, 2.0);
 }
 
 TYPED_TEST(Gradient, OfALineOfCellsIsExactAlongItAndZeroAcross) {
