@@ -198,6 +198,11 @@ GRAINS: Changes = {
 }  # fmt: skip
 
 
+# Why two cases fail: a property of the law, not of the numerics.
+LOCKED = ("The law lets tissue yield in tension only: a cell compressed beyond that locks and carries what its neighbours, which "
+          "yield, do not, whatever the gradient, the kernel, the step or the cell size; if it yielded as well, the noise were ")  # fmt: skip
+
+
 def cases() -> list[Case]:
     """Every hard case."""
     free = {"root.base": "clamped"}
@@ -211,7 +216,8 @@ def cases() -> list[Case]:
              {**UNIFORM, "root.length_mm": 0.3,
               "division": {"l0_mm": 0.0202, "c_d": 1.0, "s_d_per_mm2": 0.0, "x_d_mm": 0.0}},
              0.3, 2.0, {"divisions": (60, 60)}, restart=True),
-        Case("ratio_1", "E_R/E_A = 1, all tissue grows and swells alike", {**UNIFORM, **moduli(1.0)}, 1.0, 4.0),
+        Case("ratio_1", "E_R/E_A = 1, all tissue grows and swells alike, centres jittered by 0.02 of the spacing",
+             {**UNIFORM, **moduli(1.0), "root.jitter": 0.02}, 2.4, 5.0),
         Case("bulge", "E_R/E_A = 1 in the growth zone, which swells between tissue that does not", moduli(1.0), 1.0, 2.0),
         Case("ratio_4", "E_R/E_A = 4", moduli(4.0), 1.0, 10.0),
         Case("ratio_15", "E_R/E_A = 15", moduli(15.0), 1.0, 10.0),
@@ -227,7 +233,7 @@ def cases() -> list[Case]:
              {"divisions": (20, 100)}),
         Case("lambda_001", "lambda0 times 0.01: 0.004 /h", {"growth.lambda0_ug_mm3_h": 4.34e3}, 2.0, 20.0),
         Case("irregular", "volumes vary 10-fold, centres jittered by 0.3 of the spacing",
-             {"root.size_variation": 0.82, "root.jitter": 0.3}, 2.0, 12.0, {"divisions": (20, 120)}, restart=True),
+             {"root.size_variation": 0.82, "root.jitter": 0.3}, 2.0, 20.0, {"divisions": (20, 200)}, restart=True),
         Case("one_wide", "one cell wide", width(1), 2.0, 20.0, {"divisions": (3, 30)}),
         Case("two_wide", "two cells wide", width(2), 2.0, 20.0, {"divisions": (6, 60)},
              neighbours=5.0),  # a corner's on the lattice: two in its row, three in the other
@@ -242,9 +248,7 @@ def cases() -> list[Case]:
              {"contact_N": (0.01, 0.01)}),
         Case("corner_beside_axis", "the corner lies a cell beside the axis", in_contact(corner(0.62, 0.02)), 0.6, 4.0,
              {"contact_N": (1e-3, 1e-3)},
-             remark="the corner presses the tip aside and the growth zone folds. Tissue there yields in tension only, so that one "
-                    "compressed cell carries what its neighbours do not: 0.52 to 0.86 with any gradient, eta, penalty or step, "
-                    "0.59 with cells of half the size"),
+             remark="the corner presses the tip aside and the growth zone folds. " + LOCKED + "0.27"),
         Case("appears_in_contact", "a wall that reaches a tenth of a cell into the tip at the start",
              in_contact(plane(0.598, 90.0)), 0.3, 4.0, {"contact_N": (0.05, 0.05)},
              stress_MPa=1020.0 * 0.002 / 0.6),
@@ -266,16 +270,15 @@ def cases() -> list[Case]:
         Case("microscopy_3d", "3D: 1500 irregular cells from a microscopy file, neighbours touch",
              {**SPACE, "root": {"cells_file": str(PROJECT / "scenarios" / "cells" / "root_tip.csv"), "tip_axis": "+x"}},
              0.05, 1.5),
-        Case("soil_arrested", "soil's plate arrests the root for 10 h", {"numerics.step_h": 1e-4}, 0.6, 10.2,
+        Case("soil_arrested", "soil's plate arrests the root for 10 h", {"numerics.step_h": 1e-4}, 0.6, 10.5,
              {"contact_N": (0.1, 0.1)}, twin=(), restart=True,
-             remark="arrested from 0.15 h on. Later the growth zone, which yields, folds: stress noise 0.5 at 10.4 h, and "
-                    "0.73 at 10.5 h with cells of half the size"),
+             remark="quiet for 9 h (0.34); then the growth zone, which yields, folds. " + LOCKED + "0.40"),
         Case("soil_release", "soil's plate arrests the root for 0.2 h and lets go at once", {"numerics.step_h": 1e-4},
              0.6, 2.0, {"contact_N": (0.1, 0.1), "stretch": (1.03, 1.2)}, twin=("--gone-at", "0.35")),
         Case("soil_stiff", "YADE: grains 20 times as stiff as usual, root in contact from the start",
              {**GRAINS, "soil.E_MPa": 5000.0}, 0.02, 0.5, {"contact_N": (1e-3, 0.01)}, needs_yade=True),
         Case("soil_squeezed", "YADE: grains between the tip and a wall that stands still two grains ahead",
-             {**GRAINS, "soil.box_to_mm": [2.0, 1.2]}, 0.02, 0.5, {"contact_N": (1e-3, 0.05)}, needs_yade=True),
+             {**GRAINS, "soil.box_to_mm": [2.0, 1.2]}, 0.02, 0.6, {"contact_N": (1e-3, 0.05)}, needs_yade=True),
         Case("soil_servo", "YADE: servo walls on all sides of some 50 grains, at a tenth of the usual pressure",
              {**GRAINS, "soil.walls": "servo", "soil.confining_pressure_MPa": 0.004}, 0.02, 0.5, needs_yade=True),
     ]  # fmt: skip
