@@ -35,7 +35,7 @@ CPU_LIMIT_S = 90  # of one run
 BOUNDS = PROJECT / "tools" / "accuracy_bounds.toml"
 BOUND_FACTOR = 1.5
 BOUND_FLOOR = 3e-4  # below it errors are rounding and settling, which another compiler changes
-BOUND_FLOOR_OF = {"cell length": 0.06}  # one layer of cells that divides a moment earlier
+BOUND_FLOOR_OF = {"cell length": 0.02}  # layers of cells that divide a moment earlier
 STATUS_OF_EXIT = {2: "refused", 3: "unphysical", 4: "soil failed", -24: "too long"}  # 24: SIGXCPU
 
 MEASURING = [Path(module.__file__) for module in (answers, measure, problems, runs, theory)]
@@ -179,7 +179,8 @@ def part_of(text: str) -> tuple[int, int]:
 
 def measure_id(row: Row) -> str:
     """What tells an error of the quick grid from the others."""
-    return f"{row.problem}, {row.choice}, {row.across} across, {row.measure}"
+    level = "" if math.isnan(row.level) else f" {row.level:g}"
+    return f"{row.problem}, {row.choice}{level}, {row.across} across, {row.measure}"
 
 
 def bounds_text(rows: list[Row]) -> str:

@@ -201,9 +201,7 @@ def test_a_row_is_not_run_again(project: Path, programs: Path, tmp_path: Path):
 
 def exceeded(rows: list[Row], recorded: dict) -> list[str]:
     """What is worse than recorded, or has another status, or is missing."""
-    problems_found, seen = [], {}
-    for r in rows:
-        seen[f"{r.problem}, {r.choice}, {r.across} across, {r.measure}"] = r
+    problems_found, seen = [], {accuracy_cost.measure_id(r): r for r in rows}
     for name, bound in recorded["errors"].items():
         r = seen.get(name)
         if r is None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
@@ -222,7 +223,7 @@ def table_of_the_paper(rows: Sequence[Row], problems: Sequence[Problem]) -> str:
         own, base = (find(rows, n, p.name, measure, USUAL_ACROSS) for n in (PAPER_NAME, DEFAULT_NAME))
         if own is None or base is None:
             continue
-        told = [f"{percent(own.error)} ({own.cpu_s:.2g} s)", ""] if own.status == "done" else [own.status, own.remark]
+        told = [f"{percent(own.error)} ({own.cpu_s:.2g} s)", ""] if own.status == "done" else [own.status, re.sub(r"^rootsoil: \S+\.toml(:\d+)?: |^from --set: ", "", own.remark)]
         lines.append([f"{p.title}: {measure}", told[0], f"{percent(base.error)} ({base.cpu_s:.2g} s)", told[1]])
     return table(["", "paper's scheme", "default", ""], lines)
 
@@ -290,8 +291,7 @@ What the tables below say:
 The default (preset balanced) with finer cells: error, processor time, and the order observed from the first to the last.
 
 {cells}
-An order near 0 stands where the error is no longer one of the cells' size: rounding of the settled state, the step, or
-the divisions' places (one layer of cells that divides a moment earlier changes the mean length of its bin).
+An order near 0 stands where the error is no longer one of the cells' size: rounding of the settled state, or the step.
 
 ## The step
 

@@ -321,7 +321,7 @@ def hertz_errors(scene: Scene, columns: Columns) -> list[float]:
 
 TIP = Measure("tip speed", "tip's way against the closed form")
 RATE = Measure("axial rate", "axial strain rate, rms over cells, against the closed form")
-LENGTH = Measure("cell length", "cell length, rms of bins of 0.2 mm, against the closed form with divisions")
+LENGTH = Measure("cell length", "cell length, rms of bins of 0.2 mm, mean over time, against the closed form with divisions")
 
 
 def strain_problem(name: str, title: str, anisotropy: Changes, exact_radial: bool = True) -> Problem:
@@ -409,7 +409,7 @@ def all_problems() -> list[Problem]:
             "Root among grains",
             (
                 Measure("elongation", "growth, rms over samples, against the closed form with the soil's forces"),
-                Measure("tip force", "mean force on the tip, rms over samples, against the finest run", True),
+                Measure("tip force", "mean force on the tip (N), rms over samples, against the finest run", True),
             ),
             soil_scene,
             lambda run: answers.soil_values(run, 0.1),

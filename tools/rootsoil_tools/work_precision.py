@@ -206,7 +206,7 @@ def draw_picture(rows: Sequence[Row], pairs: Sequence[tuple[str, str]], problems
         points = points_of(rows, problem, measure, cost)
         axes = paper.place(figure, left, bottom, 72.0, height)
         draw_panel(axes, points)
-        axes.set_xlabel(COSTS[cost], labelpad=1.0)
+        axes.set_xlabel(COSTS[cost] + (", all samples" if problems[problem].soil else ""), labelpad=1.0)
         if left < 90.0 or problems[problem].soil:
             axes.set_ylabel("relative error")
         names += [p.choice for p in points if p.choice not in names]
