@@ -24,8 +24,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+import tomli_w
+
 from rootsoil_tools import accuracy_page, answers, measure, problems, runs, theory, work_precision
-from rootsoil_tools.accuracy_grid import Task, full_grid, quick_grid
+from rootsoil_tools.accuracy_grid import Task, full_grid, place_of_task, quick_grid
 from rootsoil_tools.accuracy_table import Row, place_of, read_rows, with_errors, write_rows
 from rootsoil_tools.problems import Problem, all_problems
 from rootsoil_tools.runs import RunError
@@ -152,6 +154,17 @@ def merge(new: Sequence[Row], table: Path, known_problems: Sequence[Problem]) ->
     return rows
 
 
+def drop_strays(table: Path, grid: Sequence[Task]) -> None:
+    """Rows of runs that the grid no longer has go, and that is said."""
+    places = {place_of_task(task) for task in grid}
+    with locked(table):
+        rows = read_rows(table)
+        kept = [row for row in rows if place_of(row) in places]
+        if len(kept) < len(rows):
+            print(f"dropped {len(rows) - len(kept)} rows of runs that are no longer in the grid", flush=True)
+            write_rows(kept, table)
+
+
 def run_grid(tasks: Sequence[Task], programs: Path, program: str, table: Path, known_problems: Sequence[Problem]) -> None:
     """Runs what the table does not hold yet."""
     known = {row.key for row in read_rows(table)}
@@ -183,26 +196,23 @@ def measure_id(row: Row) -> str:
     return f"{row.problem}, {row.choice}{level}, {row.across} across, {row.measure}"
 
 
-def bounds_text(rows: list[Row]) -> str:
+BOUNDS_HEADER = """\
+# SPDX-License-Identifier: MIT
+# Errors of tools/accuracy_cost.py --quick; tests/tools/test_accuracy_cost.py fails when one is larger than `factor`
+# times what stands here, and larger than its floor. Written by tools/accuracy_cost.py --quick --record-bounds.
+"""
+
+
+def bounds_text(rows: Sequence[Row]) -> str:
     """tools/accuracy_bounds.toml with the errors of these rows, and why a run has none."""
-    lines = [
-        "# SPDX-License-Identifier: MIT",
-        "# Errors of tools/accuracy_cost.py --quick; tests/tools/test_accuracy_cost.py fails when one is larger than `factor`",
-        "# times what stands here, and larger than its floor. Written by tools/accuracy_cost.py --quick --record-bounds.",
-        f"factor = {BOUND_FACTOR}",
-        f"floor = {BOUND_FLOOR}",
-        "",
-        "[floor_of]",
-        *(f'"{measure}" = {floor}' for measure, floor in BOUND_FLOOR_OF.items()),
-        "",
-        "[errors]",
-    ]
+    errors: dict[str, float | str] = {}
     for row in rows:
         if row.status != "done":
-            lines.append(f'"{measure_id(row)}" = "{row.status}"')
+            errors[measure_id(row)] = row.status
         elif math.isfinite(row.error):
-            lines.append(f'"{measure_id(row)}" = {row.error:.3g}')
-    return "\n".join(lines) + "\n"
+            errors[measure_id(row)] = float(f"{row.error:.3g}")
+    recorded = {"factor": BOUND_FACTOR, "floor": BOUND_FLOOR, "floor_of": BOUND_FLOOR_OF, "errors": errors}
+    return BOUNDS_HEADER + tomli_w.dumps(recorded)
 
 
 def main() -> int:
@@ -224,7 +234,8 @@ def main() -> int:
     names = {p.name for p in known_problems}
     if unknown := set(arguments.only or []) - names:
         parser.error(f"no such problem: {', '.join(sorted(unknown))} (there are: {', '.join(sorted(names))})")
-    grid = (quick_grid if arguments.quick else full_grid)([p for p in known_problems if not arguments.only or p.name in arguments.only])
+    make_grid = quick_grid if arguments.quick else full_grid
+    grid = make_grid([p for p in known_problems if not arguments.only or p.name in arguments.only])
     if not arguments.draw_only:
         programs = arguments.programs.resolve()
         try:
@@ -232,6 +243,7 @@ def main() -> int:
         except OSError as error:
             print(f"accuracy_cost: {error}; build first (tools/build.sh), or give --programs", file=sys.stderr)
             return 1
+        drop_strays(table, make_grid(known_problems))
         number, count = arguments.part
         run_grid(grid[number - 1 :: count], programs, program, table, known_problems)
     rows = with_errors(read_rows(table), known_problems)

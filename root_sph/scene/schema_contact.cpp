@@ -9,7 +9,7 @@ namespace rootsoil::sections {
 SectionSpec obstacle_section() {
   using Ob = ObstacleSection;
   return section<Ob>("obstacle", repeated, "A rigid obstacle: penalty contact with Coulomb friction.",
-                          [](auto& s) { return &s.obstacles; }, {
+                     [](auto& s) { return &s.obstacles; }, {
     key(&Ob::name, "name", "-", any_text, "For messages and outputs; unique.", "-").defaults_to("obstacle_1, ..."),
     key(&Ob::shape, "shape", "-", one_of({"plane", "box", "disc", "sphere"}), "disc in 2D only, sphere in 3D only.",
         "paper S4").required(),
@@ -34,7 +34,7 @@ SectionSpec soil_section() {
   using So = SoilSection;
   const auto soil_key = [](auto member, auto... rest) { return key(member_of<So>(member), std::move(rest)...); };
   return section<So>("soil", optional, "Granular soil around the root, moved by YADE in a process of its own.",
-                          [](auto& s) { return &s.soil; }, {
+                     [](auto& s) { return &s.soil; }, {
     soil_key(&So::soil_dimension, "dimension", "-", between(2, 3), "2: one layer of discs; 3: balls. The scene's.",
         "docs/soil.md").defaults_to("scene.dimension").written_when([](const So&) { return false; }),
     soil_key(&So::box_from_mm, "box_from_mm", "mm", place_mm, "Corner of the box; the root enters through x = from.",
@@ -91,8 +91,8 @@ SectionSpec soil_section() {
 SectionSpec soil_obstacle_section() {
   using Sb = SoilObstacle;
   return section<Sb>("soil.obstacle", repeated,
-                          "A rigid body inside the soil, met by grains and root; a gap is a place without grains.",
-                          [](auto& s) { return s.soil ? &s.soil->obstacles : nullptr; }, {
+                     "A rigid body inside the soil, met by grains and root; a gap is a place without grains.",
+                     [](auto& s) { return s.soil ? &s.soil->obstacles : nullptr; }, {
     key(&Sb::name, "name", "-", any_text, "For messages; unique.", "-").defaults_to("soil.obstacle_1, ..."),
     key(&Sb::shape, "shape", "-", one_of({"box", "plate", "stone", "clump", "gap"}),
         "stone: a ball; clump: three balls that hold together.", "docs/soil.md").required(),
@@ -114,7 +114,7 @@ SectionSpec soil_obstacle_section() {
 SectionSpec soil_contact_section() {
   using Sk = SoilContactSection;
   return section<Sk>("soil.contact", optional, "How root and soil exchange motion and forces.",
-                          [](auto& s) { return s.soil ? &s.soil_contact : nullptr; }, {
+                     [](auto& s) { return s.soil ? &s.soil_contact : nullptr; }, {
     key(&Sk::interval_h, "interval_h", "h", above(0).up_to(1, seconds),
         "Between two exchanges, rounded to whole windows: the accuracy knob of the coupling.", "docs/soil.md"),
     key(&Sk::marker_radius_mm, "marker_radius_mm", "mm", above(0).up_to(10, microns), "Of the balls that are the root's surface.",
@@ -135,7 +135,7 @@ SectionSpec soil_contact_section() {
 SectionSpec penetrometer_section() {
   using Pn = PenetrometerSection;
   return section<Pn>("penetrometer", optional, "A probe pushed into [soil] by rootsoil penetrometer; a run ignores it.",
-                          [](auto& s) { return &s.penetrometer; }, {
+                     [](auto& s) { return &s.penetrometer; }, {
     key(&Pn::diameter_mm, "diameter_mm", "mm", above(0).up_to(1e2, microns), "Of the shaft.", "docs/soil.md").required(),
     key(&Pn::cone_angle_deg, "cone_angle_deg", "deg", between(10, 180), "Full angle of the cone; 180: a round tip.",
         "docs/soil.md"),

@@ -16,9 +16,9 @@ const Limits slope_mm = above(0).up_to(1e3, microns);
 SectionSpec growth_section() {
   using Gr = GrowthSection;
   return section<Gr>("growth", optional,
-                          "Walls soften and yield: lambda = lambda0 ((1+c_g)/2 + (1-c_g)/2 (s-x_g)/s_g "
-                          "exp(0.5 - (s-x_g)^2/(2 s_g^2))), never below 0.",
-                          [](auto& s) { return &s.growth; }, {
+                     "Walls soften and yield: lambda = lambda0 ((1+c_g)/2 + (1-c_g)/2 (s-x_g)/s_g "
+                     "exp(0.5 - (s-x_g)^2/(2 s_g^2))), never below 0.",
+                     [](auto& s) { return &s.growth; }, {
     key(&Gr::lambda0_ug_mm3_h, "lambda0_ug_mm3_h", "ug/mm^3/h", softening,
         "Softening coefficient; measured roots need about a tenth of the printed values.", "Eq. 6, Table 1, docs/physics.md 4")
         .required().or_from_response(response_growth),
@@ -38,8 +38,8 @@ SectionSpec growth_section() {
 SectionSpec division_section() {
   using Di = DivisionSection;
   return section<Di>("division", optional,
-                          "A cell divides when its longest axis reaches l0 (c_d + s_d (s - x_d)^2).",
-                          [](auto& s) { return &s.division; }, {
+                     "A cell divides when its longest axis reaches l0 (c_d + s_d (s - x_d)^2).",
+                     [](auto& s) { return &s.division; }, {
     key(&Di::l0_mm, "l0_mm", "mm", above(0).up_to(1, microns), "Reference cell size.", "Eq. 6, Table 1").required(),
     key(&Di::c_d, "c_d", "-", above(0), "Scale of the threshold.", "Eq. 6, Table 1"),
     key(&Di::s_d_per_mm2, "s_d_per_mm2", "1/mm^2", at_least(0), "How fast the threshold rises.", "Eq. 6, Table 1"),
@@ -52,8 +52,8 @@ SectionSpec division_section() {
 SectionSpec response_section() {
   using Re = ResponseSection;
   return section<Re>("response", optional,
-                          "Parameters that follow the pressure differential, between their values at two pressures.",
-                          [](auto& s) { return &s.response; }, {
+                     "Parameters that follow the pressure differential, between their values at two pressures.",
+                     [](auto& s) { return &s.response; }, {
     key(&Re::extrapolate, "extrapolate", "-", any_number,
         "Go on linearly outside the two pressures; false: hold.", "Eq. 7"),
   });
@@ -62,8 +62,8 @@ SectionSpec response_section() {
 SectionSpec response_growth_section() {
   using Rg = ResponseSection::Growth;
   return section<Rg>("response.growth", optional,
-                          "Keys of [growth] as pairs: [value at the first pressure, value at the second].",
-                          [](auto& s) { return s.response ? &s.response->growth : nullptr; }, {
+                     "Keys of [growth] as pairs: [value at the first pressure, value at the second].",
+                     [](auto& s) { return s.response ? &s.response->growth : nullptr; }, {
     key(&Rg::p_MPa, "p_MPa", "MPa", pressure, "The two pressure differentials.", "Eq. 7, paper 2.4").required(),
     key(&Rg::lambda0_ug_mm3_h, "lambda0_ug_mm3_h", "ug/mm^3/h", softening, "As in [growth].", "Eq. 7, Table 1"),
     key(&Rg::x_g_mm, "x_g_mm", "mm", place_mm, "As in [growth].", "Eq. 7, Table 1"),
@@ -75,8 +75,8 @@ SectionSpec response_growth_section() {
 SectionSpec response_anisotropy_section() {
   using Ra = ResponseSection::Anisotropy;
   return section<Ra>("response.anisotropy", optional,
-                          "Keys of [tissue.anisotropy] as pairs: [value at the first pressure, value at the second].",
-                          [](auto& s) { return s.response ? &s.response->anisotropy : nullptr; }, {
+                     "Keys of [tissue.anisotropy] as pairs: [value at the first pressure, value at the second].",
+                     [](auto& s) { return s.response ? &s.response->anisotropy : nullptr; }, {
     key(&Ra::p_MPa, "p_MPa", "MPa", pressure, "The two pressure differentials.", "Eq. 7, paper 2.4").required(),
     key(&Ra::E_radial_max_MPa, "E_radial_max_MPa", "MPa", modulus, "As in [tissue.anisotropy].", "Eq. 7, Table 1"),
     key(&Ra::x_e_mm, "x_e_mm", "mm", place_mm, "As in [tissue.anisotropy].", "Eq. 7, Table 1"),

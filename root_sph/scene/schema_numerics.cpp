@@ -10,7 +10,7 @@ namespace rootsoil::sections {
 SectionSpec numerics_section() {
   using Nu = NumericsSection;
   return section<Nu>("numerics", defaulted, "How it is computed. Keys that are left out follow from accuracy.",
-                          [](auto& s) { return &s.numerics; }, {
+                     [](auto& s) { return &s.numerics; }, {
     key(&Nu::accuracy, "accuracy", "-", one_of(preset_names()), "Preset for the keys that are left out.", "-"),
     key(&Nu::step_h, "step_h", "h", above(0).up_to(1, seconds), "Time step.", "docs/physics.md 5.5")
         .defaults_to("from accuracy"),
@@ -42,8 +42,8 @@ SectionSpec numerics_section() {
 SectionSpec non_affine_control_section() {
   using Nc = NonAffineControlSection;
   return section<Nc>("non_affine_control", optional,
-                          "Damps and resists pair motions that no velocity gradient can see.",
-                          [](auto& s) { return &s.non_affine_control; }, {
+                     "Damps and resists pair motions that no velocity gradient can see.",
+                     [](auto& s) { return &s.non_affine_control; }, {
     key(&Nc::damping, "damping", "-", at_least(0), "Damping alpha.", "docs/physics.md 5.4"),
     key(&Nc::stiffness, "stiffness", "-", at_least(0), "Elastic penalty, times E_A.", "docs/decisions/0009"),
   });
@@ -52,8 +52,8 @@ SectionSpec non_affine_control_section() {
 SectionSpec sleep_section() {
   using Sl = SleepSection;
   return section<Sl>("sleep", optional,
-                          "Mature tissue that does not move is left out of the computation until something moves it.",
-                          [](auto& s) { return &s.sleep; }, {
+                     "Mature tissue that does not move is left out of the computation until something moves it.",
+                     [](auto& s) { return &s.sleep; }, {
     key(&Sl::strain_rate_per_h, "strain_rate_per_h", "1/h", above(0),
         "Tissue that strains no faster, from the base on, falls asleep.", "docs/effects.md"),
     key(&Sl::stress_change, "stress_change", "-", above(0),
@@ -64,7 +64,7 @@ SectionSpec sleep_section() {
 SectionSpec probe_section() {
   using Pb = ProbeSection;
   return section<Pb>("probe", repeated, "The tissue followed over time: at a cell, or in a bin along the root.",
-                          [](auto& s) { return &s.probes; }, {
+                     [](auto& s) { return &s.probes; }, {
     key(&Pb::name, "name", "-", any_text, "For outputs; unique.", "-").defaults_to("probe_1, ..."),
     key(&Pb::position_mm, "position_mm", "mm", place_mm, "The cell nearest to it at the start; this or the bin.", "-"),
     key(&Pb::distance_to_tip_mm, "distance_to_tip_mm", "mm", at_least(0).up_to(1e3, microns),

@@ -67,7 +67,7 @@ SectionSpec scene_section() {
 SectionSpec root_section() {
   using Ro = RootSection;
   return section<Ro>("root", required, "The cells at the start: a capsule filled with a lattice, or a cell file.",
-                          [](auto& s) { return &s.root; }, {
+                     [](auto& s) { return &s.root; }, {
     key(&Ro::cells_file, "cells_file", "-", any_text, "Cells from microscopy (CSV in microns), relative to this file.",
         "MorphoGraphX export"),
     key(&Ro::tip_axis, "tip_axis", "-", one_of({"+x", "-x", "+y", "-y", "+z", "-z"}),
@@ -111,9 +111,9 @@ SectionSpec tissue_section() {
 SectionSpec anisotropy_section() {
   using An = AnisotropySection;
   return section<An>("tissue.anisotropy", optional,
-                          "Radial modulus along the root: E_R = E_A + (E_H - E_A)(c_e + (1 - c_e)/"
-                          "(1 + exp(-s_e (s - x_e)))); absent: E_R = E_A.",
-                          [](auto& s) { return &s.tissue.anisotropy; }, {
+                     "Radial modulus along the root: E_R = E_A + (E_H - E_A)(c_e + (1 - c_e)/"
+                     "(1 + exp(-s_e (s - x_e)))); absent: E_R = E_A.",
+                     [](auto& s) { return &s.tissue.anisotropy; }, {
     key(&An::E_radial_max_MPa, "E_radial_max_MPa", "MPa", modulus, "Largest radial modulus E_H.", "Table 1: 15000")
         .required().or_from_response(response_anisotropy),
     key(&An::x_e_mm, "x_e_mm", "mm", place_mm, "Distance from the tip of the transition.", "Eq. 6, Table 1")
@@ -128,8 +128,8 @@ SectionSpec anisotropy_section() {
 SectionSpec pressure_section() {
   using Pr = PressureSection;
   return section<Pr>("pressure", optional, "Pressure differential, uniform over the root.",
-                          [](auto& s) { return &s.pressure; },
-                          {constant_pressure(pressure), pressure_table(pressure)});
+                     [](auto& s) { return &s.pressure; },
+                     {constant_pressure(pressure), pressure_table(pressure)});
 }
 // clang-format on
 

@@ -156,6 +156,15 @@ def test_two_that_write_at_once_lose_nothing(tmp_path: Path):
     assert sorted(r.across for r in read_rows(table)) == list(range(40))
 
 
+def test_rows_that_the_grid_no_longer_has_are_dropped_and_that_is_said(tmp_path: Path, capsys: pytest.CaptureFixture):
+    table = tmp_path / "t.csv"
+    write_rows([row("growth", name, 8, "0.01", "axial rate") for name in ("default", "eta 3")], table)
+    for said in ("dropped 1 rows of runs that are no longer in the grid\n", ""):
+        accuracy_cost.drop_strays(table, full_grid(problems.all_problems()))
+        assert [r.choice for r in read_rows(table)] == ["default"]
+        assert capsys.readouterr().out == said
+
+
 def test_a_part_is_a_part():
     assert accuracy_cost.part_of("2/3") == (2, 3)
     for text in ("0/2", "3/2", "2", "a/b"):

@@ -285,7 +285,10 @@ What the tables below say:
 - The predictor-corrector takes twice the time for the same result; so do short windows, but for contact.
 - Non-affine control costs less than a tenth of the time; bending needs it.
 - A path along an obstacle needs the small step of a quasi-static contact first, then cells.
-{lessons}
+- Sleep (`[sleep]`) with its default tolerances takes half the time where most of a root is mature, and nobody can tell.
+- In soil keep the inertial number at 0.01 or below: at 0.1 the forces are twice as large. The other choices make no difference
+  beyond the samples' scatter.
+
 ## Cells across
 
 The default (preset balanced) with finer cells: error, processor time, and the order observed from the first to the last.
@@ -319,7 +322,9 @@ Float against double is not offered: the program computes in double. Everything 
 ## Sleep
 
 A root of 4 mm of which 1.7 mm grow, 8 cells across, 3 h. Tissue that strains no faster than `strain_rate_per_h` is left out of
-the computation; `stress_change` (here with a strain rate of 0.001 /h) is what wakes it again.
+the computation; `stress_change` (here with a strain rate of 0.001 /h) is what wakes it again. A tolerance that freezes tissue
+which still strains saves nothing: the stress of what is frozen changes, and all wakes, over and over. So does a `stress_change`
+below the ripples that are always there.
 
 {sleep}
 ## The paper's scheme
@@ -332,8 +337,16 @@ Case 1 is the law's: its pressure is linear in the density, the closed form's st
 ## Soil
 
 Tiny soils, three samples of each: mean ± standard deviation over the samples; an error against the finest run is that of the
-same sample (other grain stiffness: of a sample packed with it).
-{soil_text}
+same sample (other grain stiffness: of a sample packed with it). For the grain between probe and stone, where nothing is left to
+chance: over three stretches of the probe's way.
+
+- The **inertial number** decides. The force on a grain between probe and stone goes to Hertz's with it; what is left are the
+  grain's inertia and YADE's damping of its motion. Q and the force on the tip are twice as large at 0.1 and a third too large at
+  0.03; at the default 0.01 they lie within the scatter of those at a fifth of it and less.
+- **Interval, substeps and marker spacing** make no difference beyond the scatter. Growth under the forces that the root meets
+  follows the closed form within 1 %, and closer with markers at 0.4 of their radius.
+- **Grain stiffness** belongs to the soil as much as to the numerics: stiffer grains resist more.
+
 {soil}
 ## Diagrams
 
@@ -343,8 +356,6 @@ fails elsewhere can lie on a front by chance.
 
 {pictures}
 """
-LESSONS = ""
-SOIL_TEXT = ""
 
 
 def page(rows: Sequence[Row], problems: Sequence[Problem]) -> str:
@@ -370,8 +381,6 @@ def page(rows: Sequence[Row], problems: Sequence[Problem]) -> str:
         dials=table_of_choices(rows, problems, dials(), USUAL_ACROSS),
         sleep=table_of_sleep(rows),
         paper=table_of_the_paper(rows, problems),
-        lessons=LESSONS,
-        soil_text=SOIL_TEXT,
         soil=table_of_soil(rows, problems),
         pictures=pictures,
     )

@@ -196,23 +196,23 @@ def draw_picture(rows: Sequence[Row], pairs: Sequence[tuple[str, str]], problems
     if not panels:
         return False
     paper.use_style()
-    height, gap, legend_mm = 42.0, 17.0, 19.0
+    names = {p.choice for problem, measure, cost in panels for p in points_of(rows, problem, measure, cost)}
+    columns = 5
+    height, gap, legend_mm = 42.0, 17.0, 3.0 + 3.6 * math.ceil((len(names) + 1) / columns)
     lines = (len(panels) + 1) // 2
     total = lines * (height + gap) + legend_mm + 1.0
     figure = paper.new_figure(180.0, total)
-    names: list[str] = []
     for index, (problem, measure, cost) in enumerate(panels):
-        left, bottom = 15.0 + 90.0 * (index % 2), total - (index // 2 + 1) * (height + gap) + gap - 8.0
+        left, bottom = 15.0 + 90.0 * (index % 2), total - (index // 2 + 1) * (height + gap) + gap - 9.0
         points = points_of(rows, problem, measure, cost)
         axes = paper.place(figure, left, bottom, 72.0, height)
         draw_panel(axes, points)
         axes.set_xlabel(COSTS[cost] + (", all samples" if problems[problem].soil else ""), labelpad=1.0)
         if left < 90.0 or problems[problem].soil:
             axes.set_ylabel("relative error")
-        names += [p.choice for p in points if p.choice not in names]
         if cost == "cpu_s":
             name = f"{problems[problem].title}: {problems[problem].measure(measure).meaning}"
-            wrapped = textwrap.fill(name, 52 if problems[problem].soil else 120)
+            wrapped = textwrap.fill(name, 50 if problems[problem].soil else 120)
             figure.text(left / 180.0, (bottom + height + 1.5) / total, wrapped, size=7.5, va="bottom")
             paper.letter(figure, left - 11.0, bottom + height + 1.0, "ABCDEFGH"[len({p[:2] for p in panels[: index + 1]}) - 1])
     handles = [
@@ -222,7 +222,7 @@ def draw_picture(rows: Sequence[Row], pairs: Sequence[tuple[str, str]], problems
     ]
     ring = {"marker": "o", "markersize": 7.5, "markerfacecolor": "none", "markeredgecolor": "black", "color": "#D0D0D0"}
     handles.append(Line2D([], [], linewidth=4.0, markeredgewidth=0.6, label="Pareto front", **ring))
-    figure.legend(handles=handles, loc="lower center", ncol=5, frameon=False, fontsize=6.5, columnspacing=1.2)
+    figure.legend(handles=handles, loc="lower center", ncol=columns, frameon=False, fontsize=6.5, columnspacing=1.2)
     figure.savefig(path, dpi=200)
     plt.close(figure)
     return True
