@@ -41,6 +41,7 @@ MAIN: dict[str, tuple[str, str]] = {
 OFFERED = (DEFAULT_NAME, "step", *(choice.name for choice in PRESETS))
 TARGETS = (0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
 FINE_ACROSS = 12
+NamedLevel = tuple[str, float]  # of a choice; NaN where it has none
 
 
 # ---- text -----------------------------------------------------------------------------------------
@@ -121,7 +122,7 @@ def compared(own: Row | None, base: Row | None) -> tuple[str, float]:
     return short(own.error / base.error), own.cpu_s / base.cpu_s
 
 
-def table_of_choices(rows: Sequence[Row], problems: Sequence[Problem], choices: Sequence[tuple[str, float]], across: int) -> str:
+def table_of_choices(rows: Sequence[Row], problems: Sequence[Problem], choices: Sequence[NamedLevel], across: int) -> str:
     """Choices (name, level) at some cells across: time over the default's (median), error over the default's."""
     shown = [p for p in problems if p.name in MAIN and find(rows, DEFAULT_NAME, p.name, MAIN[p.name][0], across)]
     base = {p.name: find(rows, DEFAULT_NAME, p.name, MAIN[p.name][0], across) for p in shown}
@@ -135,12 +136,12 @@ def table_of_choices(rows: Sequence[Row], problems: Sequence[Problem], choices: 
     return table(["choice", "time", *[MAIN[p.name][1] for p in shown]], lines)
 
 
-def switches() -> list[tuple[str, float]]:
+def switches() -> list[NamedLevel]:
     """What is either or."""
     return [(choice.name, math.nan) for choice in SWITCHES]
 
 
-def dials() -> list[tuple[str, float]]:
+def dials() -> list[NamedLevel]:
     """The levels of the choices that are numbers, of problems without soil."""
     return list(dict.fromkeys((d.name, level) for name in MAIN for d in DIALS[name] for level in d.levels))
 
@@ -209,7 +210,8 @@ def table_of_sleep(rows: Sequence[Row]) -> str:
         growth, tip = (find(rows, name, "sleep", measure, USUAL_ACROSS, level) for measure in ("growth", "tip speed"))
         if growth is None or tip is None:
             continue
-        told = [percent(growth.error) or "compared with", percent(tip.error)] if growth.status == "done" else [growth.status, ""]
+        done = growth.status == "done"
+        told = [percent(growth.error) or "compared with", percent(tip.error)] if done else [growth.status, ""]
         label = "without" if name == DEFAULT_NAME else f"{name.removeprefix('sleep, ')} {level:g}"
         lines.append([label, *told, f"{growth.cpu_s:.2g} s", f"{growth.cpu_s / awake.cpu_s:.2f}"])
     return table(["`[sleep]`", "growth against the run without", "tip speed", "time", "over the time without"], lines)
@@ -223,8 +225,9 @@ def table_of_the_paper(rows: Sequence[Row], problems: Sequence[Problem]) -> str:
         own, base = (find(rows, n, p.name, measure, USUAL_ACROSS) for n in (PAPER_NAME, DEFAULT_NAME))
         if own is None or base is None:
             continue
-        told = [f"{percent(own.error)} ({own.cpu_s:.2g} s)", ""] if own.status == "done" else [own.status, re.sub(r"^rootsoil: \S+\.toml(:\d+)?: |^from --set: ", "", own.remark)]
-        lines.append([f"{p.title}: {measure}", told[0], f"{percent(base.error)} ({base.cpu_s:.2g} s)", told[1]])
+        told = f"{percent(own.error)} ({own.cpu_s:.2g} s)" if own.status == "done" else own.status
+        remark = re.sub(r"^rootsoil: \S+\.toml(:\d+)?: ", "", own.remark)
+        lines.append([f"{p.title}: {measure}", told, f"{percent(base.error)} ({base.cpu_s:.2g} s)", remark])
     return table(["", "paper's scheme", "default", ""], lines)
 
 
@@ -236,7 +239,8 @@ def table_of_soil(rows: Sequence[Row], problems: Sequence[Problem]) -> str:
             for r in (r for r in rows if (r.problem, r.measure) == (p.name, m.name)):
                 found, label = deviations(r, m, rows), r.choice if math.isnan(r.level) else f"{r.choice} {r.level:g}"
                 value = spread(numbers(r)) if m.finest and r.status == "done" else ""
-                error = r.status if r.status != "done" else "compared with" if found is None else spread(100.0 * found, " %", "+")
+                told = "compared with" if found is None else spread(100.0 * found, " %", "+")
+                error = told if r.status == "done" else r.status
                 samples = max(len(numbers(r)), 1) if p.name != "hertz" else 1
                 lines.append([f"{p.title}: {m.name}", label, value, error, f"{r.cpu_s / samples:.2g} s"])
     return table(["problem", "choice", "value", "error", "time of a sample"], lines)
@@ -341,8 +345,8 @@ same sample (other grain stiffness: of a sample packed with it). For the grain b
 chance: over three stretches of the probe's way.
 
 - The **inertial number** decides. The force on a grain between probe and stone goes to Hertz's with it; what is left are the
-  grain's inertia and YADE's damping of its motion. Q and the force on the tip are twice as large at 0.1 and a third too large at
-  0.03; at the default 0.01 they lie within the scatter of those at a fifth of it and less.
+  grain's inertia and YADE's damping of its motion. Q and the force on the tip are about twice as large at 0.1 and a third too
+  large at 0.03; at the default 0.01 they lie within the scatter of those at a fifth of it and less.
 - **Interval, substeps and marker spacing** make no difference beyond the scatter. Growth under the forces that the root meets
   follows the closed form within 1 %, and closer with markers at 0.4 of their radius.
 - **Grain stiffness** belongs to the soil as much as to the numerics: stiffer grains resist more.
@@ -368,7 +372,8 @@ def page(rows: Sequence[Row], problems: Sequence[Problem]) -> str:
         "accuracy_soil": "Soil",
     }
     made = [n for n, panels in PICTURES.items() if any(points_of(rows, *pair, "cpu_s") for pair in panels)]
-    pictures = "\n".join(f"![{titles[n]}: error against processor time and against cells times steps](images/{n}.png)" for n in made)
+    against = "error against processor time and against cells times steps"
+    pictures = "\n".join(f"![{titles[name]}: {against}](images/{name}.png)" for name in made)
     return PAGE.format(
         program=", ".join(sorted({r.program for r in rows})),
         runs=what_was_run(rows, problems),

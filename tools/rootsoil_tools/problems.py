@@ -38,8 +38,8 @@ class Choice:
 
 @dataclass(frozen=True)
 class Cost:
-    """What the runs did, mean over samples: cells that move, steps, simulated hours, their own inertia error (share of p, mean over
-    the second half). NaN where there is none."""
+    """What the runs did, mean over samples: cells that move, steps, simulated hours, their own inertia error (share of p,
+    mean over the second half). NaN where there is none."""
 
     cells: float
     steps: float
@@ -168,7 +168,9 @@ def penetrometer_problem(
 # ---- scenes ---------------------------------------------------------------------------------------
 
 
-def root_scene(name: str, hours: float, every_h: float, length_mm: float, diameter_mm: float, across: int, *more: Changes) -> Scene:
+def root_scene(
+    name: str, hours: float, every_h: float, length_mm: float, diameter_mm: float, across: int, *more: Changes
+) -> Scene:
     """A root under 1 MPa, and changes."""
     base = {
         "scene": {"name": name, "duration_h": hours},
