@@ -4,13 +4,14 @@
 
 Writes OUT/accuracy_cost.csv, a row for each run and measure, after every run; rows that are there are not run again.
 A row's key is made of the command, the scene and the programs. Without --quick and --out the pictures and
-docs/accuracy_cost.md are made anew from it. The cost of a run is the processor time that it and its children used:
-a clock on the wall depends on what else the machine does.
+docs/accuracy_cost.md are made anew from it. The cost of a run is the processor time that it and its children used, the
+time on the wall where a core is free; --part 1/2 and --part 2/2 may run at once.
 """
 
 from __future__ import annotations
 
 import argparse
+import fcntl
 import hashlib
 import math
 import os
@@ -19,157 +20,43 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
-from rootsoil_tools import measure, problems, runs, theory, work_precision
-from rootsoil_tools.accuracy_table import DEFAULT_NAME, FINEST_NAME, Row, read_rows, with_errors, write_rows
-from rootsoil_tools.problems import Choice, Problem, all_problems
+import tomli_w
+
+from rootsoil_tools import accuracy_page, answers, measure, problems, runs, theory, work_precision
+from rootsoil_tools.accuracy_grid import Task, full_grid, place_of_task, quick_grid
+from rootsoil_tools.accuracy_table import Row, place_of, read_rows, with_errors, write_rows
+from rootsoil_tools.problems import Problem, all_problems
 from rootsoil_tools.runs import RunError
 
 PROJECT = Path(__file__).resolve().parent.parent
-CPU_LIMIT_S = 60  # of one run
+CPU_LIMIT_S = 90  # of one run
 BOUNDS = PROJECT / "tools" / "accuracy_bounds.toml"
 BOUND_FACTOR = 1.5
 BOUND_FLOOR = 3e-4  # below it errors are rounding and settling, which another compiler changes
-BOUND_FLOOR_OF = {"cell length": 0.06}  # one layer of cells that divides a moment earlier
+BOUND_FLOOR_OF = {"cell length": 0.02}  # layers of cells that divide a moment earlier
 STATUS_OF_EXIT = {2: "refused", 3: "unphysical", 4: "soil failed", -24: "too long"}  # 24: SIGXCPU
 
-PAPER = Choice(
-    "paper's scheme",
-    {
-        "numerics.kernel": "isotropic",
-        "numerics.H_bar": 2.0,
-        "numerics.gradient": "linear",
-        "numerics.stepper": "predictor_corrector",
-        "numerics.inertia": "scalar",
-        "numerics.inertia_compensation": False,
-        "tissue.law": "pressure_deviator",
-    },
-    non_affine=False,
-)
-DEFAULT = Choice(DEFAULT_NAME)
-METHODS = [
-    Choice("isotropic kernel, H_bar 2", {"numerics.kernel": "isotropic", "numerics.H_bar": 2.0}),
-    Choice("isotropic kernel, H_bar 4.5", {"numerics.kernel": "isotropic", "numerics.H_bar": 4.5}),
-    Choice("isotropic kernel, H_bar 8", {"numerics.kernel": "isotropic", "numerics.H_bar": 8.0}),
-    Choice("eta 1.2", {"numerics.eta": 1.2}),
-    Choice("eta 2", {"numerics.eta": 2.0}),
-    Choice("plain gradient", {"numerics.gradient": "plain"}),
-    Choice("linear gradient", {"numerics.gradient": "linear"}),
-    Choice("quadratic gradient", {"numerics.gradient": "quadratic"}),
-    Choice("scalar inertia", {"numerics.inertia": "scalar"}),
-    Choice("no compensation of inertia", {"numerics.inertia_compensation": False}),
-    Choice("window 5", {"numerics.window_steps": 5}),
-    Choice("window 80", {"numerics.window_steps": 80}),
-    Choice("no non-affine control", non_affine=False),
-    Choice("predictor-corrector", {"numerics.stepper": "predictor_corrector"}),
-    Choice("law pressure_deviator", {"tissue.law": "pressure_deviator"}),
-    PAPER,
-]
-PRESETS = [Choice(f"preset {name}", {"numerics.accuracy": name}) for name in ("fast", "balanced", "reference")]
-STEPS = [Choice("step", level=factor, step_factor=factor) for factor in (8.0, 4.0, 2.0, 1.0, 0.5)]
-MOVING = ("growth", "division", "path")
-IN_SOIL = {  # curve: key, levels by problem
-    "interval": {
-        "hertz": ("penetrometer.interval_h", (0.008, 0.002, 0.001)),
-        "penetrometer": ("penetrometer.interval_h", (0.048, 0.006, 0.003)),
-        "soil": ("soil.contact.interval_h", (0.016, 0.008, 0.002)),
-    },
-    "inertial number": {
-        name: ("soil.inertial_number_max", (0.1, 0.03, 0.003)) for name in ("hertz", "penetrometer", "soil")
-    },
-    "grain stiffness": {
-        "penetrometer": ("soil.E_MPa", (62.5, 125.0, 500.0)),
-        "soil": ("soil.E_MPa", (25.0, 50.0, 200.0)),
-    },
-    "marker spacing": {"soil": ("soil.contact.marker_spacing", (1.0, 0.3))},
-}
-FINEST_IN_SOIL = {
-    "penetrometer": {"penetrometer.interval_h": 0.003, "soil.inertial_number_max": 0.003, "soil.E_MPa": 500.0},
-    "soil": {
-        "soil.contact.interval_h": 0.002,
-        "soil.inertial_number_max": 0.003,
-        "soil.E_MPa": 200.0,
-        "soil.contact.marker_spacing": 0.3,
-    },
-}
-
-
-@dataclass(frozen=True)
-class Task:
-    """One run."""
-
-    problem: Problem
-    choice: Choice
-    across: int
-
-
-def full_grid(chosen: list[Problem]) -> list[Task]:
-    """What matters most first, so that a study that is stopped has it."""
-    plain = [p for p in chosen if not p.soil]
-    still = [p for p in plain if p.name not in MOVING]
-    grown = [p for p in plain if p.name in ("growth", "division")]
-    path = [p for p in plain if p.name == "path"]
-    cheap = still + grown
-    tasks = [Task(p, DEFAULT, across) for across in (4, 6, 8, 10, 12) for p in cheap]
-    tasks += [Task(p, choice, 8) for choice in PRESETS for p in cheap]
-    tasks += [Task(p, choice, 8) for choice in STEPS for p in grown]
-    tasks += [Task(p, choice, 6) for choice in METHODS for p in cheap if concerns(choice, p)]
-    tasks += soil_grid([p for p in chosen if p.soil])
-    tasks += [Task(p, DEFAULT, across) for across in (6, 8, 10) for p in path]
-    tasks += [Task(p, choice, 6) for choice in (*STEPS, *METHODS) for p in path if concerns(choice, p)]
-    tasks += [Task(p, DEFAULT, 16) for p in cheap]
-    tasks += [Task(p, choice, 10) for choice in METHODS for p in cheap if concerns(choice, p)]
-    return tasks + [Task(p, DEFAULT, 12) for p in path]
-
-
-def concerns(choice: Choice, problem: Problem) -> bool:
-    """Whether the choice can make a difference."""
-    return choice.name != "no compensation of inertia" or problem.name in MOVING
-
-
-def soil_grid(chosen: list[Problem]) -> list[Task]:
-    """One choice at a time."""
-    tasks = []
-    for p in chosen:
-        if p.name in FINEST_IN_SOIL:
-            tasks.append(Task(p, Choice(FINEST_NAME, FINEST_IN_SOIL[p.name]), 6))
-        tasks.append(Task(p, DEFAULT, 6))
-        for name, by_problem in IN_SOIL.items():
-            if p.name in by_problem:
-                key, levels = by_problem[p.name]
-                tasks += [Task(p, Choice(name, {key: level}, level), 6) for level in levels]
-    return tasks
-
-
-def quick_grid(chosen: list[Problem]) -> list[Task]:
-    """What continuous integration runs."""
-    cheap = [p for p in chosen if p.name != "path" and not p.soil]
-    tasks = [Task(p, DEFAULT, across) for across in (6, 10) for p in cheap if across == 6 or p.name != "division"]
-    tasks += [Task(p, choice, 6) for choice in PRESETS if choice.name != "preset balanced" for p in cheap]
-    tasks += [Task(p, PAPER, 6) for p in cheap]
-    return tasks
-
-
-# ---- running --------------------------------------------------------------------------------------
-
-
-MEASURING = [Path(module.__file__) for module in (measure, problems, runs, theory)]
+MEASURING = [Path(module.__file__) for module in (answers, measure, problems, runs, theory)]
+SOIL = sorted((PROJECT / "soil_coupling" / "yade_side").glob("*.py"))
 
 
 def programs_of(folder: Path) -> str:
-    """Version of the program, and a digest of the programs in the folder and of what measures here."""
+    """Version of the program, and a digest of the programs in the folder, of the soil and of what measures here."""
     digest = hashlib.sha256()
-    for path in (folder / "rootsoil", folder / "bending_problem", *MEASURING):
+    for path in (folder / "rootsoil", folder / "bending_problem", *SOIL, *MEASURING):
         digest.update(path.read_bytes())
     version = subprocess.run([folder / "rootsoil", "version"], capture_output=True, text=True, check=True).stdout
     return f"{version.strip()} {digest.hexdigest()[:12]}"
 
 
-def key_of(command: list[str], folder: Path, program: str) -> str:
+def key_of(commands: Sequence[Sequence[str]], folder: Path, program: str) -> str:
     """Digest of all that a run depends on: what it is called with, the files that it finds, the programs."""
-    parts = [program, *command[1:], *(path.read_text() for path in sorted(folder.iterdir()))]
+    called = [part for command in commands for part in command[1:]]
+    parts = [program, *called, *(path.read_text() for path in sorted(folder.iterdir()))]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
 
 
@@ -195,25 +82,32 @@ def timed(command: list[str], folder: Path) -> tuple[int, float, float]:
     return process.returncode, usage.ru_utime + usage.ru_stime, time.monotonic() - start
 
 
-def run_task(task: Task, programs: Path, program: str, known: dict[str, list[Row]]) -> list[Row]:
-    """The rows of a run: those that are known, or new ones."""
+def error_line(folder: Path) -> str:
+    """The first line that the last command complained with."""
+    lines = (line.strip() for line in (folder / "err").read_text(errors="replace").splitlines())
+    return next((line for line in lines if line), "")
+
+
+def run_task(task: Task, programs: Path, program: str, known: set[str]) -> list[Row]:
+    """The rows of a run, one after the other of each sample; none where its key is known."""
     with tempfile.TemporaryDirectory(prefix="accuracy_") as name:
         folder = Path(name)
-        command = task.problem.prepare(programs, folder, task.across, task.choice)
-        key = key_of(command, folder, program)
+        commands = task.problem.prepare(programs, folder, task.across, task.choice)
+        key = key_of(commands, folder, program)
         if key in known:
-            return known[key]
-        exit_status, cpu_s, wall_s = timed(command, folder)
-        status, remark, values, cost = STATUS_OF_EXIT.get(exit_status, f"exit {exit_status}"), "", {}, None
-        if exit_status == 0:
+            return []
+        status, remark, values, cost, cpu_s, wall_s = "done", "", {}, None, 0.0, 0.0
+        for command in commands:
+            exit_status, own_cpu_s, own_wall_s = timed(command, folder)
+            cpu_s, wall_s = cpu_s + own_cpu_s, wall_s + own_wall_s
+            if exit_status != 0:
+                status, remark = STATUS_OF_EXIT.get(exit_status, f"exit {exit_status}"), error_line(folder)
+                break
+        if status == "done":
             try:
                 values, cost = task.problem.read(folder)
-                status = "done"
             except (ValueError, RunError) as error:
                 status, remark = "not measured", str(error)
-        else:
-            lines = [line.strip() for line in (folder / "err").read_text(errors="replace").splitlines()]
-            remark = next((line for line in lines if line), "")
         nan = math.nan
         return [
             Row(
@@ -240,31 +134,85 @@ def run_task(task: Task, programs: Path, program: str, known: dict[str, list[Row
         ]
 
 
+@contextmanager
+def locked(table: Path) -> Iterator[None]:
+    """Nobody else changes the table meanwhile."""
+    folder = os.open(table.parent, os.O_RDONLY)
+    try:
+        fcntl.flock(folder, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(folder)
+
+
+def merge(new: Sequence[Row], table: Path, known_problems: Sequence[Problem]) -> list[Row]:
+    """All rows, with the new ones in the place of those that an older program left; the table is written."""
+    with locked(table):
+        places = {place_of(row) for row in new}
+        rows = with_errors([row for row in read_rows(table) if place_of(row) not in places] + [*new], known_problems)
+        write_rows(rows, table)
+    return rows
+
+
+def drop_strays(table: Path, grid: Sequence[Task]) -> None:
+    """Rows of runs that the grid no longer has go, and that is said."""
+    places = {place_of_task(task) for task in grid}
+    with locked(table):
+        rows = read_rows(table)
+        kept = [row for row in rows if place_of(row) in places]
+        if len(kept) < len(rows):
+            print(f"dropped {len(rows) - len(kept)} rows of runs that are no longer in the grid", flush=True)
+            write_rows(kept, table)
+
+
+def run_grid(tasks: Sequence[Task], programs: Path, program: str, table: Path, known_problems: Sequence[Problem]) -> None:
+    """Runs what the table does not hold yet."""
+    known = {row.key for row in read_rows(table)}
+    for number, task in enumerate(tasks, 1):
+        new = run_task(task, programs, program, known)
+        if not new:
+            continue
+        rows = merge(new, table, known_problems)
+        told = ", ".join(f"{r.measure} {r.error:.2e}" for r in rows if r.key == new[0].key and r.error == r.error)
+        level = "" if math.isnan(task.choice.level) else f" {task.choice.level:g}"
+        print(
+            f"{number}/{len(tasks)} {task.problem.name}, {task.choice.name}{level}, {task.across} across: {new[0].status}, "
+            f"{new[0].cpu_s:.2f} s; {told or new[0].remark}",
+            flush=True,
+        )
+
+
+def part_of(text: str) -> tuple[int, int]:
+    """"1/2" as (1, 2)."""
+    number, _, count = text.partition("/")
+    if not (number.isdigit() and count.isdigit() and 1 <= int(number) <= int(count)):
+        raise argparse.ArgumentTypeError(f"'{text}' is no part; 1/2 and 2/2 are the halves")
+    return int(number), int(count)
+
+
 def measure_id(row: Row) -> str:
     """What tells an error of the quick grid from the others."""
-    return f"{row.problem}, {row.choice}, {row.across} across, {row.measure}"
+    level = "" if math.isnan(row.level) else f" {row.level:g}"
+    return f"{row.problem}, {row.choice}{level}, {row.across} across, {row.measure}"
 
 
-def bounds_text(rows: list[Row]) -> str:
+BOUNDS_HEADER = """\
+# SPDX-License-Identifier: MIT
+# Errors of tools/accuracy_cost.py --quick; tests/tools/test_accuracy_cost.py fails when one is larger than `factor`
+# times what stands here, and larger than its floor. Written by tools/accuracy_cost.py --quick --record-bounds.
+"""
+
+
+def bounds_text(rows: Sequence[Row]) -> str:
     """tools/accuracy_bounds.toml with the errors of these rows, and why a run has none."""
-    lines = [
-        "# SPDX-License-Identifier: MIT",
-        "# Errors of tools/accuracy_cost.py --quick; tests/tools/test_accuracy_cost.py fails when one is larger than `factor`",
-        "# times what stands here, and larger than its floor. Written by tools/accuracy_cost.py --quick --record-bounds.",
-        f"factor = {BOUND_FACTOR}",
-        f"floor = {BOUND_FLOOR}",
-        "",
-        "[floor_of]",
-        *(f'"{measure}" = {floor}' for measure, floor in BOUND_FLOOR_OF.items()),
-        "",
-        "[errors]",
-    ]
+    errors: dict[str, float | str] = {}
     for row in rows:
         if row.status != "done":
-            lines.append(f'"{measure_id(row)}" = "{row.status}"')
+            errors[measure_id(row)] = row.status
         elif math.isfinite(row.error):
-            lines.append(f'"{measure_id(row)}" = {row.error:.3g}')
-    return "\n".join(lines) + "\n"
+            errors[measure_id(row)] = float(f"{row.error:.3g}")
+    recorded = {"factor": BOUND_FACTOR, "floor": BOUND_FLOOR, "floor_of": BOUND_FLOOR_OF, "errors": errors}
+    return BOUNDS_HEADER + tomli_w.dumps(recorded)
 
 
 def main() -> int:
@@ -276,13 +224,18 @@ def main() -> int:
     parser.add_argument("--draw-only", action="store_true", help="runs nothing: pictures and page from the rows there are")
     parser.add_argument("--record-bounds", action="store_true", help=f"with --quick: write {BOUNDS.relative_to(PROJECT)}")
     parser.add_argument("--only", nargs="*", help="names of problems; otherwise all")
+    parser.add_argument("--part", type=part_of, default=(1, 1), metavar="I/N", help="every N-th run only, from the I-th on")
     arguments = parser.parse_args()
-    folder = arguments.out or (PROJECT / "runs" / "accuracy_quick" if arguments.quick else PROJECT / "docs")
+    in_docs = not (arguments.out or arguments.quick)
+    folder = PROJECT / "docs" if in_docs else arguments.out or PROJECT / "runs" / "accuracy_quick"
     folder.mkdir(parents=True, exist_ok=True)
     table = folder / "accuracy_cost.csv"
     known_problems = all_problems()
-    chosen = [p for p in known_problems if not arguments.only or p.name in arguments.only]
-    rows = read_rows(table)
+    names = {p.name for p in known_problems}
+    if unknown := set(arguments.only or []) - names:
+        parser.error(f"no such problem: {', '.join(sorted(unknown))} (there are: {', '.join(sorted(names))})")
+    make_grid = quick_grid if arguments.quick else full_grid
+    grid = make_grid([p for p in known_problems if not arguments.only or p.name in arguments.only])
     if not arguments.draw_only:
         programs = arguments.programs.resolve()
         try:
@@ -290,34 +243,16 @@ def main() -> int:
         except OSError as error:
             print(f"accuracy_cost: {error}; build first (tools/build.sh), or give --programs", file=sys.stderr)
             return 1
-        known: dict[str, list[Row]] = {}
-        for row in rows:
-            known.setdefault(row.key, []).append(row)
-        tasks = quick_grid(chosen) if arguments.quick else full_grid(chosen)
-        for number, task in enumerate(tasks, 1):
-            new = run_task(task, programs, program, known)
-            if new[0].key in known:
-                continue
-            known[new[0].key] = new
-            # a row of an older program or grid makes room for that of this one
-            place = lambda r: (r.problem, r.choice, r.across, str(r.level))  # noqa: E731
-            rows = [r for r in rows if place(r) != place(new[0])] + new
-            rows = with_errors(rows, known_problems)
-            write_rows(rows, table)
-            told = ", ".join(f"{r.measure} {r.error:.2e}" for r in rows if r.key == new[0].key and r.error == r.error)
-            step = "" if math.isnan(task.choice.level) else f" {task.choice.level:g}"
-            print(
-                f"{number}/{len(tasks)} {task.problem.name}, {task.choice.name}{step}, {task.across} across: {new[0].status}, "
-                f"{new[0].cpu_s:.2f} s; {told or new[0].remark}",
-                flush=True,
-            )
-        rows = with_errors(rows, known_problems)
-        write_rows(rows, table)
+        drop_strays(table, make_grid(known_problems))
+        number, count = arguments.part
+        run_grid(grid[number - 1 :: count], programs, program, table, known_problems)
+    rows = with_errors(read_rows(table), known_problems)
     if arguments.quick and arguments.record_bounds:
         BOUNDS.write_text(bounds_text(rows), encoding="utf-8")
-    work_precision.draw(rows, known_problems, folder / "images" if folder == PROJECT / "docs" else folder)
-    if folder == PROJECT / "docs":
-        (folder / "accuracy_cost.md").write_text(work_precision.page(rows, known_problems), encoding="utf-8")
+    work_precision.draw(rows, known_problems, folder / "images" if in_docs else folder)
+    if not arguments.quick:
+        page = accuracy_page.page(rows, known_problems)
+        (folder / "accuracy_cost.md").write_text(page, encoding="utf-8")
     return 0
 
 

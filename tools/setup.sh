@@ -37,6 +37,7 @@ libbenchmark-dev     benchmarks
 python3-h5py         tools: read run.h5
 python3-numpy        tools: arithmetic
 python3-matplotlib   tools: overview.png and the other figures
+python3-tomli-w      tools: write scene files (TOML)
 python3-pytest       tools: tests
 "
 # A scene without [soil] starts no process and needs none of this.

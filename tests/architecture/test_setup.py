@@ -29,6 +29,7 @@ PACKAGES: dict[str, tuple[set[str], set[str], set[str]]] = {
     "python3-h5py": (set(), set(), {"h5py"}),
     "python3-numpy": (set(), set(), {"numpy"}),
     "python3-matplotlib": (set(), set(), {"matplotlib"}),
+    "python3-tomli-w": (set(), set(), {"tomli_w"}),
     "python3-pytest": (set(), set(), {"pytest"}),
     "yade": (set(), set(), {"yade"}),
     "cmake": (set(), {"GoogleTest"}, set()),

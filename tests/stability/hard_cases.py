@@ -7,15 +7,16 @@ as hard as its name says. mm, h, MPa.
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from rootsoil_tools import scenes
+from rootsoil_tools.scenes import Changes, with_changes
+
 PROJECT = Path(__file__).resolve().parents[2]
 FRAMES = 6  # of a run, after the first
-Changes = Mapping[str, Any]  # "section.key" or "section": value; None removes it
 
 # 180 cells, 6 across. Softening peaks at 0.40 /h 0.2 mm from the tip and ends at 0.4 mm; the tip grows at 0.10 mm/h and
 # cells divide at 1.5 times their size.
@@ -57,21 +58,7 @@ class Scheme:
 
 
 DEFAULT = Scheme("default", {})
-# Eq. 1-4 to the letter and section 4.4 of the paper; inertia from the stability bound, without which there is no step.
-PAPER = Scheme(
-    "paper",
-    {
-        "tissue.law": "pressure_deviator",
-        "scene.allow_unstable": True,
-        "numerics.kernel": "isotropic",
-        "numerics.H_bar": 2.0,
-        "numerics.gradient": "linear",
-        "numerics.stepper": "predictor_corrector",
-        "numerics.inertia": "scalar",
-        "numerics.inertia_compensation": False,
-        "non_affine_control": None,
-    },
-)
+PAPER = Scheme("paper", {**scenes.PAPER, "scene.allow_unstable": True})
 SCHEMES = (DEFAULT, PAPER)
 
 
@@ -93,54 +80,11 @@ class Case:
     restart: bool = False  # also interrupted in the middle and resumed, in the tests
 
 
-def with_changes(scene: dict[str, Any], changes: Changes) -> dict[str, Any]:
-    """A copy of the scene with the changes made, in their order."""
-    changed = copy.deepcopy(scene)
-    for path, value in changes.items():
-        *sections, key = path.split(".")
-        inner = changed
-        for section in sections:
-            inner = inner.setdefault(section, {})
-        if value is None:
-            inner.pop(key, None)
-        else:
-            inner[key] = copy.deepcopy(value)
-    return changed
-
-
-def toml_value(value: Any) -> str:
-    """A number, text, truth value or list of them."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return f'"{value}"'
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(toml_value(element) for element in value) + "]"
-    return repr(value)
-
-
-def toml_lines(table: Mapping[str, Any], header: str) -> list[str]:
-    """A table and what is below it. A list of tables becomes [[header]]."""
-    lines = [header] if header else []
-    section = header.strip("[]")
-    inner: list[str] = []
-    for key, value in table.items():
-        below = f"{section}.{key}" if section else key
-        if isinstance(value, Mapping):
-            inner += toml_lines(value, f"[{below}]")
-        elif isinstance(value, list) and value and isinstance(value[0], Mapping):
-            for element in value:
-                inner += toml_lines(element, f"[[{below}]]")
-        else:
-            lines.append(f"{key} = {toml_value(value)}")
-    return lines + inner
-
-
 def scene_text(case: Case, scheme: Scheme, hours: float, more: Changes | None = None) -> str:
     """The scene file of a case under a scheme that runs for some hours."""
     run = {"scene.name": case.name, "scene.duration_h": hours, "output.every_h": hours / FRAMES}
     scene = with_changes(BASE, {**case.changes, **run})
-    return "\n".join(toml_lines(with_changes(with_changes(scene, scheme.changes), more or {}), "")) + "\n"
+    return scenes.scene_text(with_changes(with_changes(scene, scheme.changes), more or {}))
 
 
 def plane(x_mm: float, angle_deg: float, y_mm: float = 0.0, friction: float = 0.2) -> dict[str, Any]:

@@ -3,18 +3,22 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import os
 import subprocess
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from rootsoil_tools import problems, theory, work_precision
+import accuracy_cost
+from rootsoil_tools import accuracy_page, answers, problems, scenes, theory, work_precision
+from rootsoil_tools.accuracy_grid import full_grid, place_of_task
 from rootsoil_tools.accuracy_table import Row, read_rows, with_errors, write_rows
 
 TOLERANCE = 0.1  # of what a preset states against the table
@@ -75,12 +79,10 @@ def test_pareto_front():
 
 def test_cells_that_are_carried_stretched_and_divided():
     """Under a uniform rate e, v = e s: a cell at s is at s exp(e t), its length exp(e t) times as long; two halves then."""
-    scene = tomllib.loads(problems.GROWTH.format(hours=1.0, size=0.01))
-    scene["growth"]["c_g"] = 1.0
-    model = theory.model_of(scene)
+    model = theory.model_of(scenes.with_changes(problems.growth_scene(1.0, 8), {"growth.c_g": 1.0}))
     rate = float(model.axial_rate(0.5))
     hours = 0.5 * math.log(2.0) / rate
-    s, length = problems.divided_lengths(model, lambda s: np.full_like(s, 0.011), np.array([0.2]), np.array([0.01]), hours)
+    s, length = answers.divided_lengths(model, lambda s: np.full_like(s, 0.011), np.array([0.2]), np.array([0.01]), hours)
     whole = 0.01 * math.exp(rate * hours)
     assert length == pytest.approx([whole / 2.0] * 2, rel=1e-3)
     assert float(np.mean(s)) == pytest.approx(0.2 * math.exp(rate * hours), rel=1e-3)
@@ -88,24 +90,101 @@ def test_cells_that_are_carried_stretched_and_divided():
 
 
 def test_two_hertzian_contacts_carry_the_same_force():
-    force = problems.two_contacts_N(0.01, (5.0, 8.0))
-    assert (force / 5.0) ** (2.0 / 3.0) + (force / 8.0) ** (2.0 / 3.0) == pytest.approx(0.01)
-    assert problems.two_contacts_N(-0.01, (5.0, 8.0)) == 0.0
+    force = answers.two_contacts_N(np.array([-0.01, 0.01]), (5.0, 8.0))
+    assert force[0] == 0.0
+    assert (force[1] / 5.0) ** (2.0 / 3.0) + (force[1] / 8.0) ** (2.0 / 3.0) == pytest.approx(0.01)
+
+
+def test_hertz_stiffness():
+    """Two balls of 2 mm, E = 91 MPa, nu = 0.3: E* = 50 MPa, R = 1 mm."""
+    assert answers.hertz_stiffness(91.0, 0.3, 2.0, 2.0) == pytest.approx(4.0 / 3.0 * 50.0)
+
+
+def test_forces_are_averaged_over_the_way_however_often_they_are_read():
+    """A grain that rings shows in every reading, not in the mean over a stretch."""
+    scene = problems.HERTZ
+    section = scene["penetrometer"]["diameter_mm"] * scene["soil"]["d_mean_mm"]
+    for readings in (3, 12):
+        edges = np.linspace(0.804, 0.816, readings + 1)
+        fine = np.linspace(edges[:-1], edges[1:], 401)
+        force = answers.two_contacts_N(fine - 0.8, (5.0, 8.0)).mean(axis=0) * 1.01
+        ringing = 0.3 * force * (-1.0) ** np.arange(readings) if readings == 12 else 0.0
+        columns = {"depth_mm": (edges[1:] + edges[:-1]) / 2.0, "Q_MPa": (force + ringing) / section}
+        found = answers.hertz_errors(scene, columns, (5.0, 8.0), 0.8, problems.HERTZ_STRETCHES_MM)
+        assert found == pytest.approx([0.01] * 3, abs=0.05)
+
+
+def test_the_default_lies_on_the_curve_of_a_number():
+    def at(choice: str, level: float, cost: float) -> Row:
+        return replace(row("growth", choice, 8, "0.01", "axial rate", cost), error=0.01, level=level)
+
+    points = work_precision.points_of(
+        [at("eta", 1.2, 1.0), at("default", math.nan, 2.0), at("eta", 2.0, 3.0)], "growth", "axial rate", "cpu_s"
+    )
+    eta = sorted((p.place, p.cost) for p in points if p.choice == "eta")
+    assert eta == [(1.2, 1.0), (1.5, 2.0), (2.0, 3.0)]
+
+
+def test_every_run_of_the_grid_has_its_place():
+    grid = full_grid(problems.all_problems())
+    assert len({place_of_task(task) for task in grid}) == len(grid)
+    assert {task.choice.name for task in grid} == set(work_precision.STYLES)
+
+
+def test_runs_that_are_missing_are_counted():
+    known = problems.all_problems()
+    rows = [row("growth", "default", 6, "0.01", "axial rate"), row("growth", "default", 5, "0.01", "axial rate")]
+    told = accuracy_page.what_was_run([replace(rows[0], status="refused"), rows[1]], known)
+    assert told == f"Of the grid's {len(full_grid(known))} runs: 1 refused; {len(full_grid(known)) - 1} not made yet."
+
+
+def test_two_that_write_at_once_lose_nothing(tmp_path: Path):
+    table = tmp_path / "t.csv"
+    rows = [row("growth", "default", across, "0.01", "axial rate") for across in range(40)]
+    code = (
+        "import sys; from pathlib import Path; import accuracy_cost as a\n"
+        "from rootsoil_tools.accuracy_table import read_rows\n"
+        "given, table = map(Path, sys.argv[1:])\n"
+        "for row in read_rows(given): a.merge([row], table, a.all_problems())\n"
+    )
+    started = []
+    for part in (0, 1):
+        write_rows(rows[part::2], tmp_path / f"{part}.csv")
+        command = [sys.executable, "-c", code, tmp_path / f"{part}.csv", table]
+        started.append(subprocess.Popen(command, env={**os.environ, "PYTHONPATH": str(Path(accuracy_cost.__file__).parent)}))
+    assert [process.wait(timeout=60) for process in started] == [0, 0]
+    assert sorted(r.across for r in read_rows(table)) == list(range(40))
+
+
+def test_rows_that_the_grid_no_longer_has_are_dropped_and_that_is_said(tmp_path: Path, capsys: pytest.CaptureFixture):
+    table = tmp_path / "t.csv"
+    write_rows([row("growth", name, 8, "0.01", "axial rate") for name in ("default", "eta 3")], table)
+    for said in ("dropped 1 rows of runs that are no longer in the grid\n", ""):
+        accuracy_cost.drop_strays(table, full_grid(problems.all_problems()))
+        assert [r.choice for r in read_rows(table)] == ["default"]
+        assert capsys.readouterr().out == said
+
+
+def test_a_part_is_a_part():
+    assert accuracy_cost.part_of("2/3") == (2, 3)
+    for text in ("0/2", "3/2", "2", "a/b"):
+        with pytest.raises(argparse.ArgumentTypeError, match="is no part"):
+            accuracy_cost.part_of(text)
 
 
 @pytest.mark.parametrize("accuracy", ["fast", "balanced", "reference"])
 def test_presets_state_what_was_measured(project: Path, programs: Path, tmp_path: Path, accuracy: str):
     """`check` gives for a preset the numbers of docs/accuracy_cost.csv."""
     scene = tmp_path / "scene.toml"
-    scene.write_text(problems.growth_scene(1.0, 6))
+    scene.write_text(scenes.scene_text(problems.growth_scene(1.0, 6)))
     command = [programs / "rootsoil", "check", scene, "--json", "--accuracy", accuracy]
     stated = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     rows = read_rows(project / "docs" / "accuracy_cost.csv")
-    found = work_precision.find(rows, f"preset {accuracy}", "division", "axial rate", 8)
+    found = accuracy_page.find(rows, f"preset {accuracy}", "division", "axial rate", 8)
     assert found is not None and found.status == "done"
     assert stated["discretisation_error"] == pytest.approx(found.error, rel=TOLERANCE)
     assert stated["preset_inertia_error"] == pytest.approx(found.inertia_error, rel=TOLERANCE)
-    assert stated["preset_ms_per_cell_hour"] == pytest.approx(work_precision.time_per_cell_hour_ms(found), rel=TOLERANCE)
+    assert stated["preset_ms_per_cell_hour"] == pytest.approx(accuracy_page.time_per_cell_hour_ms(found), rel=TOLERANCE)
 
 
 def test_the_page_is_the_table(project: Path):
@@ -113,7 +192,7 @@ def test_the_page_is_the_table(project: Path):
     known = problems.all_problems()
     rows = with_errors(read_rows(project / "docs" / "accuracy_cost.csv"), known)
     assert len({r.key for r in rows}) > 200
-    assert (project / "docs" / "accuracy_cost.md").read_text() == work_precision.page(rows, known)
+    assert (project / "docs" / "accuracy_cost.md").read_text() == accuracy_page.page(rows, known)
 
 
 def test_a_row_is_not_run_again(project: Path, programs: Path, tmp_path: Path):
@@ -131,9 +210,7 @@ def test_a_row_is_not_run_again(project: Path, programs: Path, tmp_path: Path):
 
 def exceeded(rows: list[Row], recorded: dict) -> list[str]:
     """What is worse than recorded, or has another status, or is missing."""
-    problems_found, seen = [], {}
-    for r in rows:
-        seen[f"{r.problem}, {r.choice}, {r.across} across, {r.measure}"] = r
+    problems_found, seen = [], {accuracy_cost.measure_id(r): r for r in rows}
     for name, bound in recorded["errors"].items():
         r = seen.get(name)
         if r is None:

@@ -11,10 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from rootsoil_tools.accuracy_grid import DEFAULT_NAME, FINEST_NAME
 from rootsoil_tools.problems import Measure, Problem
-
-DEFAULT_NAME = "default"
-FINEST_NAME = "finest"
 
 
 @dataclass(frozen=True)
@@ -39,6 +37,11 @@ class Row:
     program: str
     values: str
     remark: str
+
+
+def place_of(row: Row) -> tuple[str, str, int, str]:
+    """Which run of the grid it is."""
+    return row.problem, row.choice, row.across, f"{row.level:g}"
 
 
 def write_rows(rows: Sequence[Row], path: Path) -> None:
@@ -75,20 +78,25 @@ def finest(rows: Sequence[Row], row: Row) -> Row | None:
     return max(named or [r for r in same if r.choice == DEFAULT_NAME], key=lambda r: r.cell_steps, default=None)
 
 
-def error_of(row: Row, measure: Measure, rows: Sequence[Row]) -> float:
-    """Root mean square of the values, or of their differences to those of the finest run over the scale; NaN where
-    there is none."""
+def deviations(row: Row, measure: Measure, rows: Sequence[Row]) -> np.ndarray | None:
+    """The row's values as relative errors: against the closed form, which they are already, or against those of the finest
+    run over the scale. Of a soil a number for each sample, against the same sample. None where there is nothing to compare."""
     if row.status != "done":
-        return math.nan
+        return None
     values = numbers(row)
     if not measure.finest:
-        return float(np.sqrt(np.mean(values**2)))
+        return values
     reference = finest(rows, row)
     if reference is None or reference.key == row.key:
-        return math.nan
+        return None
     exact = numbers(reference)
-    scale = measure.scale or float(np.sqrt(np.mean(exact**2)))
-    return float(np.sqrt(np.mean((values - exact) ** 2))) / scale
+    return (values - exact) / (measure.scale or float(np.sqrt(np.mean(exact**2))))
+
+
+def error_of(row: Row, measure: Measure, rows: Sequence[Row]) -> float:
+    """Root mean square of the deviations; NaN where there are none."""
+    found = deviations(row, measure, rows)
+    return math.nan if found is None else float(np.sqrt(np.mean(found**2)))
 
 
 def with_errors(rows: Sequence[Row], problems: Sequence[Problem]) -> list[Row]:
