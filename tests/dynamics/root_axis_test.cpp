@@ -84,6 +84,30 @@ TYPED_TEST(Axis, OfARootShorterThanTwoSlicesIsItsMeanDirection) {
   for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(tissue.cells.distance_to_tip[i], exact[i], 1e-12);
 }
 
+/// Slices narrower than the root is now would hold cells of one side only: the line zigzags, distances jump by a cell, and growth,
+/// which follows them, tears the root (docs/decisions/0004).
+TYPED_TEST(Axis, OfASwollenRootStaysStraight) {
+  constexpr int dim = TypeParam::value;
+  constexpr int along = 24;
+  Tissue<dim> tissue;
+  straight_root<dim>(tissue, along, 6);
+  RootAxis<dim> axis;
+  axis.start(tissue);
+  auto& cells = tissue.cells;
+  Random random(4);
+  Vec<dim> swell = Vec<dim>::Constant(3.0);
+  swell[0] = 1.0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells.position[i] = swell.cwiseProduct(cells.position[i]) + 0.05 * size * random.matrix<Vec<dim>>();
+    cells.shape[i] = swell.cwiseInverse().asDiagonal() * cells.shape[i] * swell.cwiseInverse().asDiagonal();
+    cells.volume[i] *= swell.prod();
+  }
+  for (int again = 0; again < 200; ++again) axis.anchor(tissue);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    EXPECT_NEAR(cells.distance_to_tip[i], 0.5 * along * size - cells.position[i][0], 0.1 * size) << "cell " << i;
+  }
+}
+
 TYPED_TEST(Axis, OfAnArcMeasuresArcLength) {
   constexpr int dim = TypeParam::value;
   constexpr double radius = 0.8;

@@ -33,11 +33,13 @@ BASE: dict[str, Any] = {
     "output": {},
 }  # fmt: skip
 
-# Softening is the same everywhere: all tissue stretches at 0.40 /h. E_R is nearly such that the root keeps its radius.
+# Softening is the same everywhere: all tissue stretches at 0.40 /h. E_R is nearly such that the root keeps its radius. Centres are
+# disturbed a little: a symmetric lattice stays symmetric where nothing else is stable.
 UNIFORM: Changes = {
     "growth": {"lambda0_ug_mm3_h": 4.34e5, "x_g_mm": 0.05, "s_g_mm": 0.15, "c_g": 1.0},
     "tissue.anisotropy": {"E_radial_max_MPa": 15300.0, "x_e_mm": 0.0, "s_e_per_mm": 0.0, "c_e": 1.0},
     "root.length_mm": 0.2,
+    "root.jitter": 0.02,
     "root.base": "free",  # a held base inside a growth zone is strained without end
 }
 # 3D: 4 across, and E_R that keeps the radius there
@@ -160,8 +162,7 @@ def cases() -> list[Case]:
              {**UNIFORM, "root.length_mm": 0.3,
               "division": {"l0_mm": 0.0202, "c_d": 1.0, "s_d_per_mm2": 0.0, "x_d_mm": 0.0}},
              0.3, 2.0, {"divisions": (60, 60)}, restart=True),
-        Case("ratio_1", "E_R/E_A = 1, all tissue grows and swells alike, centres jittered by 0.02 of the spacing",
-             {**UNIFORM, **moduli(1.0), "root.jitter": 0.02}, 2.4, 5.0),
+        Case("ratio_1", "E_R/E_A = 1, all tissue grows and swells alike", {**UNIFORM, **moduli(1.0)}, 2.4, 5.0),
         Case("bulge", "E_R/E_A = 1 in the growth zone, which swells between tissue that does not", moduli(1.0), 1.0, 2.0),
         Case("ratio_4", "E_R/E_A = 4", moduli(4.0), 1.0, 10.0),
         Case("ratio_15", "E_R/E_A = 15", moduli(15.0), 1.0, 10.0),
