@@ -20,7 +20,8 @@ std::size_t at_rest(const SoilRun<Dim>& run) {
   return run.tissue.cells.total() - run.tissue.cells.size();
 }
 
-double number(const SoilRun<2>& run, const std::string& name) {
+template <int Dim>
+double number(const SoilRun<Dim>& run, const std::string& name) {
   for (const auto& effect : run.built.model->effects) {
     for (const auto& [column, value] : effect->history()) {
       if (column == name) return value;
@@ -29,8 +30,9 @@ double number(const SoilRun<2>& run, const std::string& name) {
   throw std::runtime_error("no column " + name);
 }
 
-double momentum_residual(const SoilRun<2>& run) {
-  return relative_momentum_residual<2>(run.tissue, run.contact.contact_force_N());
+template <int Dim>
+double momentum_residual(const SoilRun<Dim>& run) {
+  return relative_momentum_residual<Dim>(run.tissue, run.contact.contact_force_N());
 }
 
 /// Presses on every marker with a force that is a function of place and time.
@@ -97,23 +99,29 @@ TEST(SoilSleep, ThrustAndGrowthAreThoseOfTheRootThatIsAwake) {
 }
 
 /// From 0.5 h on the force on the flanks near the base is other than before. The lower flank bears this share of it.
-SoilRun<2> pressed(double before_N, double after_N, double lower_share) {
-  return SoilRun<2>(long_root, {}, [=](const Scene&) {
+template <int Dim>
+SoilRun<Dim> pressed(double before_N, double after_N, double lower_share, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides = long_root;
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return SoilRun<Dim>(overrides, {}, [=](const Scene&) {
     return std::make_unique<Presses>([=](const Vec3& x, double time_h) {
-      const double force_N = x[0] < 0.1 || x[0] > 0.4 ? 0.0 : time_h < 0.5 ? before_N : after_N;
-      return Vec3{0.0, x[1] > 0.0 ? -force_N : lower_share * force_N, 0.0};
+      if (x[0] < 0.1 || x[0] > 0.4) return Vec3{};
+      const double force_N = (time_h < 0.5 ? before_N : after_N) * (x[1] > 0.0 ? 1.0 : lower_share);
+      const double radius_mm = std::hypot(x[1], x[2]);
+      return Vec3{0.0, -force_N * x[1] / radius_mm, -force_N * x[2] / radius_mm};
     });
   }, scene_text + "[sleep]\n");
 }
 
 /// What acts on markers over cells at rest is part of the balance, and those markers stand where they are, with their ids.
-TEST(SoilSleep, MarkersOverCellsAtRestStandStillAndTheirForcesCount) {
-  SoilRun<2> run = pressed(5e-4, 5e-4, 0.9);
+template <int Dim>
+void expect_still_markers_and_balance(double force_N, double from_h, double to_h, const std::vector<std::string>& more = {}) {
+  SoilRun<Dim> run = pressed<Dim>(force_N, force_N, 0.9, more);
   double imbalance = 0.0, lost = 0.0;
-  run.advance_to(0.4);
+  run.advance_to(from_h);
   ASSERT_GT(at_rest(run), 100u);
   const auto still = [&run] {
-    std::map<std::int64_t, Vec<2>> found;
+    std::map<std::int64_t, Vec<Dim>> found;
     const auto& surface = run.contact.surface();
     for (std::size_t m = 0; m < surface.ids().size(); ++m) {
       if (surface.positions()[m][0] < 0.5) found[surface.ids()[m]] = surface.positions()[m];
@@ -123,8 +131,8 @@ TEST(SoilSleep, MarkersOverCellsAtRestStandStillAndTheirForcesCount) {
   const auto before = still();
   ASSERT_GT(before.size(), 40u);
   std::size_t pressed_at_rest = 0;
-  run.advance_to(0.6, [&] {
-    Vec<2> on_markers = Vec<2>::Zero();
+  run.advance_to(to_h, [&] {
+    Vec<Dim> on_markers = Vec<Dim>::Zero();
     double load = 0.0;
     for (std::size_t m = 0; m < run.contact.surface().ids().size(); ++m) {
       on_markers += run.contact.marker_force_N(m);
@@ -144,7 +152,14 @@ TEST(SoilSleep, MarkersOverCellsAtRestStandStillAndTheirForcesCount) {
   record("imbalance", imbalance);
   EXPECT_LT(lost, 1e-12);
   EXPECT_LT(imbalance, 1e-12);
-  EXPECT_EQ(number(run, "times_woken"), 0.0);
+}
+
+TEST(SoilSleep, MarkersOverCellsAtRestStandStillAndTheirForcesCount) {
+  expect_still_markers_and_balance<2>(5e-4, 0.4, 0.6);
+}
+
+TEST(SoilSleep, In3D) {
+  expect_still_markers_and_balance<3>(2e-5, 0.3, 0.35, {"scene.dimension=3", "root.cell_size_mm=0.06", "numerics.eta=1.3"});
 }
 
 /// A force that comes to tissue at rest wakes it when it is more than the tolerance; one that comes, and one that goes.
@@ -154,7 +169,7 @@ TEST(SoilSleep, AForceOnTissueAtRestWakesIt) {
     bool wakes;
   };
   for (const Case& c : {Case{0.0, 6e-3, true}, Case{6e-3, 0.0, true}, Case{0.0, 5e-4, false}, Case{6e-3, 6.5e-3, false}}) {
-    SoilRun<2> run = pressed(c.before_N, c.after_N, 1.0);
+    SoilRun<2> run = pressed<2>(c.before_N, c.after_N, 1.0);
     run.advance_to(0.5);
     ASSERT_GT(at_rest(run), 50u) << c.before_N;
     const double woken = number(run, "times_woken");  // by the force that rose in the ramp
