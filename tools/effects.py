@@ -4,7 +4,8 @@
 
 Three measurements: what `rootsoil check` finds in every scene of scenarios/; the main job and a 3D root with each effect
 taken out in turn (processor time of the same number of steps, pair by pair, median); the main job with and without
-[sleep], hour by hour. --quick: shorter ones, for CI, into --out only.
+[sleep], hour by hour. --quick: shorter ones, for CI, into --out only. What stands below the page's last mark is
+written by hand and kept.
 """
 
 from __future__ import annotations
@@ -204,9 +205,9 @@ soil's process takes some nine tenths of a run with few cells, half of one with 
 ## Only where and when it matters: `[sleep]`
 
 Mature tissue that does not move leaves all loops: everything from the base up to two kernel reaches beyond the last cell that
-strains by more than `strain_rate_per_h` or moves (mean over ten windows). The cells in between are held, as at the base. When
+strains by more than `strain_rate_per_h` or moves (mean over ten windows, or over `mean_over_h`). The cells in between are held, as at the base. When
 their axial stress changes by more than `stress_change` of the pressure differential (thrust, bending, a neighbour that moves),
-or the differential itself does, all wake; cells in contact do not fall asleep. Not with `[soil]`, where grains touch the flanks.
+or the differential itself does, all wake; cells in contact with an `[[obstacle]]` do not fall asleep. Those among grains do (below).
 
 ![Cost per simulated hour, with and without sleep](images/effects_sleep.png)
 
@@ -216,9 +217,16 @@ Without `[sleep]` the cost of an hour follows the root's length, with it the len
 results is measured above and in tests/physics/sleep_test.cpp (places of cells within 0.1 % of a cell after an hour; force on a
 plate within 2 %; same bits after a pause).
 
-Division is tested only in cells that are not held or asleep; contact forces only in cells near an obstacle, found once in a
-window; softening and moduli once in a window.
 """
+KEPT_FROM = "<!-- From here on written by hand: tools/effects.py keeps it. -->\n"
+
+
+def kept_part(page: Path) -> str:
+    """What stands below the mark of a page that is there, with the mark; of any other, nothing."""
+    if not page.is_file():
+        return ""
+    _, mark, text = page.read_text(encoding="utf-8").partition(KEPT_FROM)
+    return mark + text
 
 
 def main() -> int:
@@ -253,7 +261,7 @@ def main() -> int:
     text = PAGE.format(
         scenes="\n".join(scenes), shares="\n".join(table).rstrip(), sleep="\n".join(sleep), steps=steps, pairs=pairs
     )
-    page.write_text(text, encoding="utf-8")
+    page.write_text(text + kept_part(page), encoding="utf-8")
     print(f"wrote {page}, {pictures / 'effects_sleep.png'} and {pictures / 'effects_sleep.csv'}")
     return 0
 

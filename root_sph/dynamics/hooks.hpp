@@ -34,6 +34,12 @@ struct Hooks {
   template <class... Arguments>
   using Passes = std::vector<std::pair<std::string, std::function<void(Tissue<Dim>&, Arguments...)>>>;
 
+  /// Forces of the outside, N, that cells at rest feel as well.
+  struct Load {
+    const Field<Dim, Vec<Dim>>* now;
+    Field<Dim, Vec<Dim>>* asleep;  ///< when the cell fell asleep
+  };
+
   Passes<> window_start;  ///< before distances and neighbours: cells may divide here
   Passes<> parameters;    ///< distances are known: set what depends on them
   Passes<> operators;     ///< gradient operators are known as well
@@ -41,6 +47,7 @@ struct Hooks {
   Passes<> step_start;
   Passes<SlipAdvance> forces;  ///< add to the forces of cells
   Passes<std::vector<char>&> busy;  ///< mark cells that must not fall asleep, now and then at a window's end
+  std::vector<Load> loads;
   Passes<> window_end;         ///< pairs and deformation of the window are still there; what remains is state
 
   template <class... Arguments>

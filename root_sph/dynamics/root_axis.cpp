@@ -190,6 +190,16 @@ void RootAxis<Dim>::restore(const std::vector<double>& saved) {
 }
 
 template <int Dim>
+double mean_section(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis) {
+  const auto& cells = tissue.cells;
+  double volume = 0.0;
+  for (std::size_t i = 0; i < cells.total(); ++i) {
+    if (cells.clamped[i] != hold::at_base) volume += cells.volume[i];
+  }
+  return volume / axis.length_mm();
+}
+
+template <int Dim>
 double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, double window_h) {
   if (tissue.pressure_MPa == 0.0 || window_h <= 0.0) return 0.0;
   const auto& cells = tissue.cells;
@@ -219,6 +229,8 @@ double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, doubl
 
 template class RootAxis<2>;
 template class RootAxis<3>;
+template double mean_section<2>(const Tissue<2>&, const RootAxis<2>&);
+template double mean_section<3>(const Tissue<3>&, const RootAxis<3>&);
 template double inertia_error<2>(const Tissue<2>&, const RootAxis<2>&, double);
 template double inertia_error<3>(const Tissue<3>&, const RootAxis<3>&, double);
 

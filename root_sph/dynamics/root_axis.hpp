@@ -49,6 +49,10 @@ class RootAxis {
   std::vector<double> flow_mm_h_;
 };
 
+/// Mean cross-section of the tissue that the base does not hold, mm^(Dim-1).
+template <int Dim>
+double mean_section(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis);
+
 /// max over s of |sum of unbalanced axial force between the tip and s| / (p x cross-section): by how much inertia
 /// changes the axial stress, relative to the pressure differential. Mean over the latest window, from the change of
 /// momentum beyond what prescribed accelerations explain; the chatter of contacts within a window does not count.

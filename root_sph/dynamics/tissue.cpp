@@ -70,7 +70,7 @@ Energies energies(const Tissue<Dim>& tissue) {
 template <int Dim>
 double relative_momentum_residual(const Tissue<Dim>& tissue, const Vec<Dim>& external_N) {
   Vec<Dim> sum = -external_N;
-  for (std::size_t i = 0; i < tissue.cells.size(); ++i) sum += tissue.force[i];
+  for (std::size_t i = 0; i < tissue.cells.total(); ++i) sum += tissue.force[i];
   double magnitudes = 0.0;
   for (std::size_t k = 0; k < tissue.pairs.pairs.size(); ++k) {
     const auto [i, j] = tissue.pairs.pairs[k];

@@ -10,9 +10,14 @@
 namespace rootsoil {
 namespace {
 
-constexpr std::int64_t windows_between_looks = 10;
 constexpr double worth_it = 0.05;  // of the cells: fewer stay awake until there are more
 constexpr double margin_reaches = 2.0;  // held cells next to moving ones need all their partners, as far as a kernel reaches
+
+/// Mean face of a cell, mm^(Dim-1).
+template <int Dim>
+double face(double volume) {
+  return std::pow(volume, (Dim - 1.0) / Dim);
+}
 
 }  // namespace
 
@@ -43,7 +48,7 @@ SleepEffect<Dim>::SleepEffect(Solver<Dim>& solver, SleepParameters parameters)
   hooks.window_end.emplace_back("sleep", [this](Tissue<Dim>& t) {
     watch(t);
     for (std::size_t i = 0; i < t.cells.size(); ++i) strain_[i] += t.axial_strain[i];
-    if (!wake_wanted_ && windows_++ % windows_between_looks == 0) look(t);
+    if (!wake_wanted_ && windows_++ % parameters_.windows_between_looks == 0) look(t);
   });
 }
 
@@ -85,6 +90,11 @@ void SleepEffect<Dim>::look(Tissue<Dim>& tissue) {
     if (cells.distance_to_tip[i] <= rest_beyond_mm) continue;
     ++resting;
     (*tissue.neighbours_at_rest)[i] = tissue.pairs.neighbours[i];
+  }
+  for (const auto& load : solver_.hooks().loads) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells.clamped[i] != hold::asleep) (*load.asleep)[i] = (*load.now)[i];
+    }
   }
   if (static_cast<double>(resting) < worth_it * static_cast<double>(cells.size())) return;
   asleep_beyond_mm_ = asleep_beyond_mm;
@@ -197,6 +207,12 @@ void SleepEffect<Dim>::watch(const Tissue<Dim>& tissue) {
   for (std::size_t i = 0; i < cells.size() && !wake_wanted_; ++i) {
     wake_wanted_ = cells.clamped[i] == hold::asleep &&
                    std::abs(cells.stress[i][0] - stress_asleep_[i]) > most;
+  }
+  for (const auto& load : solver_.hooks().loads) {
+    for (std::size_t i = 0; i < cells.total() && !wake_wanted_; ++i) {
+      wake_wanted_ = cells.clamped[i] == hold::asleep &&
+                     ((*load.now)[i] - (*load.asleep)[i]).norm() > most * face<Dim>(cells.volume[i]);
+    }
   }
 }
 

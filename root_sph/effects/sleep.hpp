@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Mature tissue that does not move falls asleep: from the base up to a margin beyond the last cell that moves or grows,
 // cells leave all loops. Those of the margin are held, as at the base, and go on as partners of the cells that move.
-// When the axial stress of the margin changes (thrust, bending, a neighbour that moves), or the pressure differential, all
-// wake. Cells in contact do not fall asleep.
+// When the axial stress of the margin changes (thrust, bending, a neighbour that moves), or the pressure differential, or the
+// soil's force on a cell that sleeps, all wake. Cells in contact with an obstacle do not fall asleep; those among grains do:
+// their markers stand still, and the force on them goes to the cells as ever.
 #pragma once
 
 #include "root_sph/effects/effect.hpp"
@@ -10,10 +11,13 @@
 namespace rootsoil {
 
 struct SleepParameters {
-  /// Cells that strain no faster along the root, and move no faster than this times its length, do not move: mean over
-  /// ten windows.
+  /// Cells that strain no faster along the root, and move no faster than this times its length, do not move: mean from
+  /// look to look.
   double strain_rate_per_h = 1e-4;
-  double stress_change = 0.05;      ///< axial, of held cells, over the pressure differential, that wakes the root
+  std::int64_t windows_between_looks = 10;
+  /// Of axial stress of held cells, or of the soil's force on the face of one that sleeps, over the pressure differential,
+  /// that wakes the root.
+  double stress_change = 0.05;
 };
 
 template <int Dim>

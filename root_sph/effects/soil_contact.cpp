@@ -91,17 +91,6 @@ void add_soil_points(SoilSnapshot soil, std::vector<PointSet>& points) {
                      {"second_id", "1", who, 1, member(soil.contact_ids, 1)}}});
 }
 
-/// Mean cross-section of the free tissue, mm^(Dim-1).
-template <int Dim>
-double section(const Solver<Dim>& solver) {
-  const auto& cells = solver.tissue().cells;
-  double volume = 0.0;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (!cells.clamped[i]) volume += cells.volume[i];
-  }
-  return volume / solver.axis().length_mm();
-}
-
 }  // namespace
 
 template <int Dim>
@@ -155,6 +144,11 @@ SoilContactEffect<Dim>::SoilContactEffect(Solver<Dim>& solver, SoilContactParame
   }
   for (const std::string& name : port_->number_names()) numbers_[name] = std::numeric_limits<double>::quiet_NaN();
   Hooks<Dim>& hooks = solver.hooks();
+  if (solver.tissue().neighbours_at_rest) {
+    hooks.loads.push_back({&force_, &solver.tissue().cells.template declare<Vec<Dim>>(
+                                        {"soil force asleep", "N", "force of the soil when the cell fell asleep"},
+                                        on_division::halve<Dim, Vec<Dim>>)});
+  }
   hooks.stiffness.emplace_back("soil contact",
                                [this](Tissue<Dim>& t, std::vector<Vec<Dim>>& k) { begin_window(t, k); });
   hooks.forces.emplace_back("soil contact", [this](Tissue<Dim>& t, SlipAdvance) { add_forces(t); });
@@ -201,8 +195,8 @@ void SoilContactEffect<Dim>::begin_window(Tissue<Dim>& tissue, std::vector<Vec<D
   anchor_mm_.resize(n);
   distance_to_tip_mm_.resize(n);
   axis_.resize(n);
-  std::vector<Vec<Dim>> cell_axis(cells.size());
-  for (std::size_t i = 0; i < cells.size(); ++i) cell_axis[i] = cells.frame[i].col(0);
+  std::vector<Vec<Dim>> cell_axis(cells.total());
+  for (std::size_t i = 0; i < cells.total(); ++i) cell_axis[i] = cells.frame[i].col(0);
   for (std::size_t m = 0; m < n; ++m) {
     anchor_mm_[m] = mapping_.interpolate(m, cells.position.values());
     distance_to_tip_mm_[m] = mapping_.interpolate(m, cells.distance_to_tip.values());
@@ -233,6 +227,7 @@ void SoilContactEffect<Dim>::add_stiffness(const Tissue<Dim>& tissue, std::vecto
   const double interval_h = parameters_.windows_per_interval * solver_.window_h();
   double limit_h = std::numeric_limits<double>::infinity();
   for (const auto& [i, k] : contact) {
+    if (i >= tissue.cells.size()) break;  // the others rest
     stiffness[i].array() += k;
     if (tissue.cells.clamped[i] || k <= 0.0) continue;
     limit_h = std::min(limit_h, tissue.step_h * std::sqrt(stiffness[i].minCoeff() / k));
@@ -259,6 +254,8 @@ void SoilContactEffect<Dim>::spread_forces() {
   }
   std::sort(loaded_.begin(), loaded_.end());
   loaded_.erase(std::unique(loaded_.begin(), loaded_.end()), loaded_.end());
+  Tissue<Dim>& tissue = solver_.tissue();  // cells at rest feel nothing else
+  for (std::size_t i = tissue.cells.size(); i < tissue.cells.total(); ++i) tissue.force[i] = force_[i];
 }
 
 template <int Dim>
@@ -274,13 +271,15 @@ void SoilContactEffect<Dim>::add_forces(Tissue<Dim>& tissue) {
     }
     spread_forces();
   }
-  for (const std::size_t i : loaded_) tissue.force[i] += force_[i];
+  for (const std::size_t i : loaded_) {
+    if (i < tissue.cells.size()) tissue.force[i] += force_[i];
+  }
 }
 
 template <int Dim>
 void SoilContactEffect<Dim>::move_markers(const Tissue<Dim>& tissue) {
   const auto& cells = tissue.cells;
-  std::vector<Vec<Dim>> moved_cells(cells.size());
+  std::vector<Vec<Dim>> moved_cells(cells.total(), Vec<Dim>::Zero());
   for (std::size_t i = 0; i < cells.size(); ++i) moved_cells[i] = cells.position[i] - start_position_mm_[i];
   for (std::size_t m = 0; m < load_.size(); ++m) {
     const Vec<Dim> moved = mapping_.interpolate(m, moved_cells);
@@ -381,7 +380,7 @@ template <int Dim>
 double SoilContactEffect<Dim>::expected_tip_speed_mm_h() const {
   const RootAxis<Dim>& axis = solver_.axis();
   const double arrest_N =
-      solver_.tissue().pressure_MPa * parameters_.free_growth.arrest_stress_per_pressure * section<Dim>(solver_);
+      solver_.tissue().pressure_MPa * parameters_.free_growth.arrest_stress_per_pressure * mean_section<Dim>(solver_.tissue(), solver_.axis());
   if (!(arrest_N > 0.0)) return 0.0;
   const auto bins = static_cast<std::size_t>(std::ceil(axis.length_mm() / axis.bin_mm()));
   std::vector<double> thrust(bins, 0.0);
@@ -435,7 +434,7 @@ std::vector<std::pair<std::string, double>> SoilContactEffect<Dim>::history() co
       {"soil_markers", static_cast<double>(load_.size())},
       {"soil_contacts", contacts},
       {"soil_tip_force_N", tip_N},
-      {"soil_tip_resistance_MPa", tip_N / section<Dim>(solver_)},  // what a penetrometer's Q is for the root
+      {"soil_tip_resistance_MPa", tip_N / mean_section<Dim>(solver_.tissue(), solver_.axis())},  // what a penetrometer's Q is for the root
       {"soil_axial_force_N", thrust_N(std::numeric_limits<double>::infinity())},
       {"soil_load_N", load},
       {"soil_root_work_Nmm", sum_.root_work_Nmm},

@@ -11,6 +11,7 @@
 #include "root_sph/effects/sleep.hpp"
 #include "root_sph/profiles/soil_response.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -98,7 +99,12 @@ void add_probes(const Scene& scene, Model<Dim>& model) {
 
 template <int Dim>
 void add_sleep(const Scene& scene, Model<Dim>& model) {
-  add<Dim, SleepEffect<Dim>>(model, SleepParameters{scene.sleep->strain_rate_per_h, scene.sleep->stress_change});
+  SleepParameters parameters{.strain_rate_per_h = *scene.sleep->strain_rate_per_h, .stress_change = *scene.sleep->stress_change};
+  if (scene.sleep->mean_over_h) {
+    const double window_h = scene.numerics.window_steps * model.solver.options().step_h;
+    parameters.windows_between_looks = std::max<std::int64_t>(1, std::llround(*scene.sleep->mean_over_h / window_h));
+  }
+  add<Dim, SleepEffect<Dim>>(model, parameters);
 }
 
 /// Parts of other effects, or conditions on the cells: nothing of their own to construct.

@@ -168,16 +168,12 @@ HistoryRow make_history_row(const Model<Dim>& model, const LengthMark& before, s
   for (std::size_t k = 1; k < axis.flow().size(); ++k) {
     fastest = std::max(fastest, (axis.flow()[k] - axis.flow()[k - 1]) / axis.bin_mm());
   }
-  double volume = 0.0;
-  for (std::size_t i = 0; i < cells.total(); ++i) {
-    if (cells.clamped[i] != hold::at_base) volume += cells.volume[i];
-  }
   std::int64_t fewest = tissue.pairs.neighbours.empty() ? 0 : static_cast<std::int64_t>(cells.size());
   for (std::size_t i = 0; i < tissue.pairs.neighbours.size(); ++i) {
     // next to cells at rest, partners are missing from the list only
     if (cells.clamped[i] != hold::asleep) fewest = std::min<std::int64_t>(fewest, tissue.pairs.neighbours[i]);
   }
-  const double section = volume / row.length_mm;
+  const double section = mean_section<Dim>(tissue, axis);
   const Energies energy = energies<Dim>(tissue);
   const Vec<Dim>& tip = axis.tip_mm();
   row.values = {tissue.time_h,

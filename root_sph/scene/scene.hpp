@@ -110,8 +110,9 @@ struct NonAffineControlSection {
 
 /// Mature tissue that does not move leaves all loops (effects/sleep.hpp).
 struct SleepSection {
-  double strain_rate_per_h = 1e-4;
-  double stress_change = 0.05;  ///< over the pressure differential
+  std::optional<double> strain_rate_per_h;
+  std::optional<double> mean_over_h;    ///< absent: ten windows
+  std::optional<double> stress_change;  ///< over the pressure differential
 };
 
 /// A point of the tissue followed over time, or a bin at a distance from the tip.

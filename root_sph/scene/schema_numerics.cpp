@@ -55,9 +55,15 @@ SectionSpec sleep_section() {
                      "Mature tissue that does not move is left out of the computation until something moves it.",
                      [](auto& s) { return &s.sleep; }, {
     key(&Sl::strain_rate_per_h, "strain_rate_per_h", "1/h", above(0),
-        "Tissue that strains no faster, from the base on, falls asleep.", "docs/effects.md"),
+        "Tissue that strains no faster, from the base on, falls asleep.", "docs/effects.md")
+        .defaults_to("1e-4; with [soil] 5e-3"),
+    key(&Sl::mean_over_h, "mean_over_h", "h", above(0),
+        "Time over which that is averaged: grains push to and fro.", "docs/effects.md")
+        .defaults_to("ten windows; with [soil] 0.1"),
     key(&Sl::stress_change, "stress_change", "-", above(0),
-        "Change of axial stress beside the sleeping tissue that wakes it, over the pressure differential.", "docs/effects.md"),
+        "Change of axial stress beside the sleeping tissue, or of the soil's force on a cell's face, that wakes it, over "
+        "the pressure differential.", "docs/effects.md")
+        .defaults_to("0.05; with [soil] 0.3"),
   });
 }
 

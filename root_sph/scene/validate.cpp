@@ -504,15 +504,16 @@ void complete_output(Scene& scene, const Origins& origins) {
   if (output.checkpoint_every_h == 0.0) output.checkpoint_every_h = output.every_h;
 }
 
-void check_sleep(const Scene& scene, const Origins& origins) {
+/// Grains push a root to and fro: there it rests only in the mean, and waking at every push would leave no rest.
+void complete_sleep(Scene& scene, const Origins& origins) {
   if (scene.root.base != "clamped") {
     origins.fail("sleep", "a root with a free base has no part that must stay where it is", {}, {},
                  "take [sleep] out, or set root.base = \"clamped\"");
   }
-  if (scene.soil) {
-    origins.fail("sleep", "grains touch the root along its flanks, where no cell may sleep", {}, {},
-                 "take [sleep] out of a scene with [soil]");
-  }
+  SleepSection& section = *scene.sleep;
+  if (!section.strain_rate_per_h) section.strain_rate_per_h = scene.soil ? 5e-3 : 1e-4;
+  if (!section.mean_over_h && scene.soil) section.mean_over_h = 0.1;
+  if (!section.stress_change) section.stress_change = scene.soil ? 0.3 : 0.05;
 }
 
 }  // namespace
@@ -536,7 +537,7 @@ void validate_and_complete(Scene& scene, const Origins& origins) {
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) complete_obstacle(scene.obstacles[i], i, scene, origins);
   complete_names(scene.probes, "probe", origins);
   for (std::size_t i = 0; i < scene.probes.size(); ++i) check_probe(scene.probes[i], i, origins);
-  if (scene.sleep) check_sleep(scene, origins);
+  if (scene.sleep) complete_sleep(scene, origins);
   if (scene.soil) complete_soil_alone(scene, origins);
   if (scene.soil) check_soil(scene, origins);
   if (scene.penetrometer) complete_penetrometer(scene, origins);

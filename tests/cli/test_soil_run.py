@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,8 @@ SMALLER = [
     "output.picture=false",
 ]
 CHECKPOINT_H = 0.1  # one of them
+# longer, and mature from 0.6 mm on; grains touch its flanks up to 0.4 mm from the base
+ASLEEP = ["root.length_mm=2.0", "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1", "sleep.mean_over_h=0.01"]
 CLOCKS = {"soil_dem_s", "soil_exchange_s"}  # the machine's, not the model's
 
 
@@ -46,9 +49,9 @@ def root_in_soil(program_path: Path, tmp_path_factory: pytest.TempPathFactory) -
     return program
 
 
-def command(out: str, *more: object) -> list[object]:
+def command(out: str, *more: object, settings: Sequence[str] = ()) -> list[object]:
     """The small scene into a folder."""
-    overrides = [word for value in SMALLER for word in ("--set", value)]
+    overrides = [word for value in (*SMALLER, *settings) for word in ("--set", value)]
     return ["run", SCENE, "--out", out, "--threads", 1, *overrides, *more]
 
 
@@ -127,6 +130,30 @@ def test_resume_changes_nothing(root_in_soil: Program):
     done = root_in_soil(*command("parts", "--resume"))
     assert done.status == 0, done.err
     same_numbers(folder / "parts", folder / "whole")
+
+
+def test_asleep_among_grains(root_in_soil: Program):
+    """Tissue that grains press on rests, its markers stand still, forces balance; killed and resumed, the same numbers."""
+    folder = root_in_soil.folder
+    done = root_in_soil(*command("asleep", settings=ASLEEP))
+    assert done.status == 0, done.err
+    rows, frame = history(folder / "asleep"), frames(folder / "asleep")
+    assert min(row["cells_at_rest"] for row in rows[1:]) > 20
+    assert summary(folder / "asleep")["momentum_residual"] < 1e-12
+    asleep = frame[-1]["clamped"] == 2
+    assert np.count_nonzero(frame[-1]["contact_force"][asleep]) > 0, "grains press on cells that sleep"
+    resting_mm = frame[-1]["position"][asleep, 0].max() - 0.4  # markers farther from the tip follow cells that sleep only
+    place = [dict(zip(f["markers/marker_id"], map(tuple, f["markers/position"]))) for f in frame[1:]]
+    still = {marker: x for marker, x in place[0].items() if x[0] < resting_mm}
+    assert len(still) > 10
+    assert all(still[marker] == after[marker] for after in place[1:] for marker in still)
+    process = root_in_soil.start(*command("asleep_parts", settings=ASLEEP))
+    wait_for_rows(folder / "asleep_parts", process, 3)
+    process.kill()
+    process.wait()
+    done = root_in_soil(*command("asleep_parts", "--resume", settings=ASLEEP))
+    assert done.status == 0, done.err
+    same_numbers(folder / "asleep_parts", folder / "asleep")
 
 
 def test_yade_is_killed(root_in_soil: Program):

@@ -169,6 +169,11 @@ seeds = 2
 interval_h = 0.01
 turgor_MPa = 1
 
+[sleep]
+strain_rate_per_h = 2e-3
+mean_over_h = 0.2
+stress_change = 0.1
+
 [numerics]
 accuracy = "reference"
 step_h = 3e-4
@@ -217,6 +222,20 @@ TEST(Scene, EmptySectionsWithDefaultsArePresent) {
   const Scene s = parse(minimal + "\n[non_affine_control]\n");
   ASSERT_TRUE(s.non_affine_control);
   EXPECT_EQ(s.non_affine_control->damping, NonAffineControlSection{}.damping);
+}
+
+TEST(Scene, ToleranceOfSleepFollowsTheSoil) {
+  const Scene alone = parse(minimal + "\n[sleep]\n");
+  ASSERT_TRUE(alone.sleep);
+  EXPECT_EQ(alone.sleep->strain_rate_per_h, 1e-4);
+  EXPECT_FALSE(alone.sleep->mean_over_h);
+  EXPECT_EQ(alone.sleep->stress_change, 0.05);
+  const std::string keys = "strain_rate_per_h = 2e-3\nmean_over_h = 0.2\nstress_change = 0.1\n";
+  const Scene among_grains = parse(replaced(everything, keys, ""));
+  EXPECT_EQ(among_grains.sleep->strain_rate_per_h, 5e-3);
+  EXPECT_EQ(among_grains.sleep->mean_over_h, 0.1);
+  EXPECT_EQ(among_grains.sleep->stress_change, 0.3);
+  EXPECT_EQ(parse(everything).sleep->stress_change, 0.1);
 }
 
 TEST(Scene, EverythingIsRead) {
@@ -304,8 +323,7 @@ TEST(Scene, EveryKeyIsWrittenUnlessItMeansNothing) {
   const std::set<std::string> left_out = {"root.cells_file",          "root.tip_axis",
                                           "pressure.differential_MPa", "soil.d_range_mm",
                                           "soil.grains_file",          "soil.inertial_number_max",
-                                          "soil.compaction_friction_deg", "sleep.strain_rate_per_h",
-                                          "sleep.stress_change"};
+                                          "soil.compaction_friction_deg"};
   for (const SectionSpec& section : schema()) {
     for (const KeySpec& key : section.keys) {
       const std::string name = section.name + "." + key.name;

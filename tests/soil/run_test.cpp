@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "root_sph/io/checkpoint.hpp"
@@ -37,14 +38,15 @@ Soil plate_soil(const Scene& scene, const SoilStart&) {
   return soil;
 }
 
-int run(const fs::path& out, const SoilMaker& make_soil, bool resume = false, std::optional<double> until_h = {}) {
+int run(const fs::path& out, const SoilMaker& make_soil, bool resume = false, std::optional<double> until_h = {},
+        const Scene& scene = contact_scene()) {
   RunOptions options;
   options.out = out;
   options.threads = 1;
   options.resume = resume;
   options.until_h = until_h;
   options.quiet = true;
-  return run_scene(contact_scene(), options, make_soil);
+  return run_scene(scene, options, make_soil);
 }
 
 std::vector<std::string> state_files(const fs::path& folder) {
@@ -54,6 +56,22 @@ std::vector<std::string> state_files(const fs::path& folder) {
     if (name.find(".state") != std::string::npos) names.push_back(name);
   }
   return names;
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, at);) parts.push_back(part);
+  return parts;
+}
+
+/// A column of history.csv.
+std::vector<double> column_of(const std::string& history, const std::string& name) {
+  const std::vector<std::string> rows = split(history, '\n'), names = split(rows.at(0), ',');
+  const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  std::vector<double> values;
+  for (std::size_t k = 1; k < rows.size(); ++k) values.push_back(std::stod(split(rows[k], ',').at(at)));
+  return values;
 }
 
 void expect_same_run(const fs::path& a, const fs::path& b) {
@@ -89,6 +107,25 @@ TEST(SoilRun, ResumesInContactBitForBit) {
   const auto& values = std::get<std::vector<double>>(force->values);
   for (std::size_t m = 0; 3 * m < values.size(); ++m) sum -= values[3 * m];
   EXPECT_GT(sum, 0.1);
+}
+
+/// Half of the root sleeps before it meets the plate, and is woken by it.
+TEST(SoilRun, ResumesAsleepBitForBit) {
+  const Scene scene = parse_scene(scene_text + "[sleep]\n", "test.toml",
+                                  {"scene.duration_h=0.4", "root.length_mm=2.4", "numerics.window_steps=5",
+                                   "output.every_h=0.02", "output.checkpoint_every_h=0.1", "numerics.step_h=2e-4"});
+  const TemporaryFolder folder;
+  ASSERT_EQ(run(folder / "whole", plate_soil, false, {}, scene), 0);
+  for (const double until_h : {0.022, 0.061, 0.2, 0.302}) {
+    const fs::path parts = folder / std::to_string(until_h);
+    ASSERT_EQ(run(parts, plate_soil, false, until_h, scene), 0);
+    ASSERT_EQ(run(parts, plate_soil, true, {}, scene), 0);
+    expect_same_run(folder / "whole", parts);
+  }
+  const std::string history = read_whole_file(folder / "whole/history.csv");
+  const std::vector<double> resting = column_of(history, "cells_at_rest"), woken = column_of(history, "times_woken");
+  EXPECT_GT(*std::max_element(resting.begin(), resting.end()), 100.0);
+  EXPECT_GE(woken.back(), 1.0);
 }
 
 TEST(SoilRun, WithoutASoilNothingOfItExists) {

@@ -35,6 +35,13 @@ def test_every_scene_is_in_the_recorded_page(project: Path):
         assert ("yade" in row) == soil, row
 
 
+def test_what_is_written_by_hand_is_kept(tmp_path: Path):
+    page = tmp_path / "effects.md"
+    assert tool.kept_part(page) == ""
+    page.write_text("made\n" + tool.KEPT_FROM + "by hand\n", encoding="utf-8")
+    assert tool.kept_part(page) == tool.KEPT_FROM + "by hand\n"
+
+
 @pytest.mark.slow
 def test_sleep_pays(project: Path, tmp_path: Path):
     """The quick study: an hour with sleep costs less, at a length that differs in the seventh digit at most."""
