@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
-#include <span>
 
 namespace rootsoil {
 namespace {
@@ -30,10 +28,14 @@ double half_extent(const Mat<Dim>& shape, const Vec<Dim>& direction) {
   return std::sqrt(direction.dot(shape.inverse() * direction));
 }
 
-/// Mean diameter of tissue that reaches from the tip to `furthest_mm`: 2D volumes are areas.
+/// Mean diameter of the tissue that is not held at the base, cells at rest with it; 2D volumes are areas.
 template <int Dim>
-double mean_diameter(std::span<const double> volumes, double furthest_mm) {
-  const double section = std::accumulate(volumes.begin(), volumes.end(), 0.0) / furthest_mm;
+double mean_diameter(const Tissue<Dim>& tissue, double length_mm) {
+  double volume = 0.0;
+  for (std::size_t i = 0; i < tissue.cells.total(); ++i) {
+    if (tissue.cells.clamped[i] != hold::at_base) volume += tissue.cells.volume[i];
+  }
+  const double section = volume / length_mm;
   return Dim == 2 ? section : std::sqrt(4.0 * section / std::numbers::pi);
 }
 
@@ -43,9 +45,11 @@ std::size_t bin_of(double s_mm, double width_mm) { return static_cast<std::size_
 
 template <int Dim>
 void RootAxis<Dim>::start(Tissue<Dim>& tissue) {
-  const auto distances = tissue.cells.active(tissue.cells.distance_to_tip);
-  const double furthest = *std::max_element(distances.begin(), distances.end());
-  bin_mm_ = 0.25 * mean_diameter<Dim>(tissue.cells.active(tissue.cells.volume), furthest);
+  for (std::size_t i = 0; i < tissue.cells.size(); ++i) {  // to the last surface; anchor() measures it along the root
+    const double end = tissue.cells.distance_to_tip[i] + half_extent<Dim>(tissue.cells.shape[i], tissue.cells.frame[i].col(0));
+    if (!tissue.cells.clamped[i]) length_mm_ = std::max(length_mm_, end);
+  }
+  bin_mm_ = 0.25 * mean_diameter<Dim>(tissue, length_mm_);
   anchor(tissue);
 }
 
@@ -59,7 +63,7 @@ void RootAxis<Dim>::anchor(Tissue<Dim>& tissue) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     longest = std::max(longest, 2.0 * half_extent<Dim>(cells.shape[i], cells.frame[i].col(0)));
   }
-  const double width = std::max(mean_diameter<Dim>(cells.active(cells.volume), furthest), 2.0 * longest);
+  const double width = std::max(mean_diameter<Dim>(tissue, length_mm_), 2.0 * longest);
 
   // the last, partial slice joins the one before it
   const std::size_t slices = std::max<std::size_t>(1, static_cast<std::size_t>(furthest / width));
