@@ -18,7 +18,10 @@ target_compile_options(rootsoil_flags INTERFACE -Wall -Wextra -Wshadow -Wno-psab
   -Wno-maybe-uninitialized
   # errno and floating-point traps are never read; this keeps results
   # deterministic (unlike -ffast-math) and lets the compiler vectorise
-  -fno-math-errno -fno-trapping-math)
+  -fno-math-errno -fno-trapping-math
+  # The compiler may keep several copies of a loop's body (first iteration, rest) and fuse other products in each: the last
+  # bits of a cell would depend on where a thread's share begins
+  -ffp-contract=off)
 if(ROOTSOIL_NATIVE)
   target_compile_options(rootsoil_flags INTERFACE -march=native)
 endif()

@@ -61,15 +61,19 @@ Eigen::Matrix<double, Dim, basis_size<Dim>> quadratic_fit(
     const Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>& moment, double& trust) {
   constexpr double smallest_pivot = 1e-3, ridge = 0.05;
   using Moment = Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>;
+  // Eigen's sums begin at the first aligned element: without a fixed alignment the last bits would depend on where the thread's
+  // stack lies.
+  constexpr std::size_t cache_line = 64;
   const Basis<Dim> scale = moment.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Moment scaled = scale.asDiagonal() * moment * scale.asDiagonal();
+  alignas(cache_line) Moment scaled = scale.asDiagonal() * moment * scale.asDiagonal();
   scaled.diagonal().template tail<basis_size<Dim> - Dim>().array() += ridge;
-  const Eigen::LDLT<Moment> factors(scaled);
+  alignas(cache_line) const Eigen::LDLT<Moment> factors(scaled);
   trust = smooth_step(factors.vectorD().minCoeff(), smallest_pivot, 4.0 * smallest_pivot);
   if (trust <= 0.0) return Eigen::Matrix<double, Dim, basis_size<Dim>>::Zero();
-  Eigen::Matrix<double, basis_size<Dim>, Dim> unit = Eigen::Matrix<double, basis_size<Dim>, Dim>::Zero();
-  unit.template topRows<Dim>().setIdentity();
-  return (scale.asDiagonal() * factors.solve(scale.asDiagonal() * unit)).transpose();
+  alignas(cache_line) Eigen::Matrix<double, basis_size<Dim>, Dim> columns = Eigen::Matrix<double, basis_size<Dim>, Dim>::Zero();
+  columns.template topRows<Dim>() = scale.template head<Dim>().asDiagonal();
+  factors.solveInPlace(columns);
+  return (scale.asDiagonal() * columns).transpose();
 }
 
 }  // namespace

@@ -28,14 +28,9 @@ double half_extent(const Mat<Dim>& shape, const Vec<Dim>& direction) {
   return std::sqrt(direction.dot(shape.inverse() * direction));
 }
 
-/// Mean diameter of the tissue that is not held at the base, cells at rest with it; 2D volumes are areas.
+/// Of a root with this section: in 2D, where a volume is an area, the section is the diameter.
 template <int Dim>
-double mean_diameter(const Tissue<Dim>& tissue, double length_mm) {
-  double volume = 0.0;
-  for (std::size_t i = 0; i < tissue.cells.total(); ++i) {
-    if (tissue.cells.clamped[i] != hold::at_base) volume += tissue.cells.volume[i];
-  }
-  const double section = volume / length_mm;
+double diameter_of(double section) {
   return Dim == 2 ? section : std::sqrt(4.0 * section / std::numbers::pi);
 }
 
@@ -45,11 +40,12 @@ std::size_t bin_of(double s_mm, double width_mm) { return static_cast<std::size_
 
 template <int Dim>
 void RootAxis<Dim>::start(Tissue<Dim>& tissue) {
-  for (std::size_t i = 0; i < tissue.cells.size(); ++i) {  // to the last surface; anchor() measures it along the root
-    const double end = tissue.cells.distance_to_tip[i] + half_extent<Dim>(tissue.cells.shape[i], tissue.cells.frame[i].col(0));
-    if (!tissue.cells.clamped[i]) length_mm_ = std::max(length_mm_, end);
+  double volume = 0.0, length = 0.0;
+  for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
+    volume += tissue.cells.volume[i];
+    length = std::max(length, tissue.cells.distance_to_tip[i]);
   }
-  bin_mm_ = 0.25 * mean_diameter<Dim>(tissue, length_mm_);
+  bin_mm_ = 0.25 * diameter_of<Dim>(volume / length);
   anchor(tissue);
 }
 
@@ -58,12 +54,17 @@ void RootAxis<Dim>::anchor(Tissue<Dim>& tissue) {
   auto& cells = tissue.cells;
   double furthest = 0.0;
   for (const double s : cells.active(cells.distance_to_tip)) furthest = std::max(furthest, s);
-  // Slices wide enough for many cells of both sides: two of the longest cells, at least a diameter of the root as it is now.
-  double longest = 0.0;
+  // Slices wide enough for many cells of both sides: two of the longest cells, at least a diameter, that of the start and the
+  // present mean one. Cells at rest count, so that those awake lie in the same slices with and without them.
+  double longest = 0.0, volume = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     longest = std::max(longest, 2.0 * half_extent<Dim>(cells.shape[i], cells.frame[i].col(0)));
   }
-  const double width = std::max(mean_diameter<Dim>(tissue, length_mm_), 2.0 * longest);
+  for (std::size_t i = 0; i < cells.total(); ++i) {
+    if (cells.clamped[i] != hold::at_base) volume += cells.volume[i];
+  }
+  double width = std::max(4.0 * bin_mm_, 2.0 * longest);
+  if (length_mm_ > 0.0) width = std::max(width, diameter_of<Dim>(volume / length_mm_));
 
   // the last, partial slice joins the one before it
   const std::size_t slices = std::max<std::size_t>(1, static_cast<std::size_t>(furthest / width));
