@@ -379,8 +379,8 @@ double SoilContactEffect<Dim>::thrust_N(double within_mm) const {
 template <int Dim>
 double SoilContactEffect<Dim>::expected_tip_speed_mm_h() const {
   const RootAxis<Dim>& axis = solver_.axis();
-  const double arrest_N =
-      solver_.tissue().pressure_MPa * parameters_.free_growth.arrest_stress_per_pressure * mean_section<Dim>(solver_.tissue(), solver_.axis());
+  const double arrest_N = solver_.tissue().pressure_MPa * parameters_.free_growth.arrest_stress_per_pressure *
+                          mean_section<Dim>(solver_.tissue(), axis);
   if (!(arrest_N > 0.0)) return 0.0;
   const auto bins = static_cast<std::size_t>(std::ceil(axis.length_mm() / axis.bin_mm()));
   std::vector<double> thrust(bins, 0.0);
@@ -430,11 +430,12 @@ std::vector<std::pair<std::string, double>> SoilContactEffect<Dim>::history() co
     load += f.norm();
   }
   const double tip_N = thrust_N(*parameters_.tip_length_mm);
+  const double section = mean_section<Dim>(solver_.tissue(), solver_.axis());
   std::vector<std::pair<std::string, double>> row{
       {"soil_markers", static_cast<double>(load_.size())},
       {"soil_contacts", contacts},
       {"soil_tip_force_N", tip_N},
-      {"soil_tip_resistance_MPa", tip_N / mean_section<Dim>(solver_.tissue(), solver_.axis())},  // what a penetrometer's Q is for the root
+      {"soil_tip_resistance_MPa", tip_N / section},  // what a penetrometer's Q is for the root
       {"soil_axial_force_N", thrust_N(std::numeric_limits<double>::infinity())},
       {"soil_load_N", load},
       {"soil_root_work_Nmm", sum_.root_work_Nmm},
