@@ -310,7 +310,8 @@ Inertia is numerical, and its error goes with the square of the step (growth, 8 
 Errors over the default's at the same number of cells across (2 is twice the error), the time as a median over the
 problems. The first row has the default's own errors. Where a run has no error, its reason: refused by the program, not
 measured (it did not come to rest), too long (over 90 s); an empty place is one where the choice means nothing, or, on the
-path, the run that the others are compared with.
+path, the run that the others are compared with. Wide isotropic kernels were not run at 12 across: they take 8 to 14 times the
+default's time there.
 
 8 cells across, what is either or:
 
