@@ -80,7 +80,8 @@ def finest(rows: Sequence[Row], row: Row) -> Row | None:
 
 def deviations(row: Row, measure: Measure, rows: Sequence[Row]) -> np.ndarray | None:
     """The row's values as relative errors: against the closed form, which they are already, or against those of the finest
-    run over the scale. Of a soil a number for each sample, against the same sample. None where there is nothing to compare."""
+    run over the scale. Of a soil a number for each sample, against the same sample. None where there is nothing to compare,
+    as with an older program's row that has other values."""
     if row.status != "done":
         return None
     values = numbers(row)
@@ -90,6 +91,8 @@ def deviations(row: Row, measure: Measure, rows: Sequence[Row]) -> np.ndarray | 
     if reference is None or reference.key == row.key:
         return None
     exact = numbers(reference)
+    if exact.shape != values.shape:
+        return None
     return (values - exact) / (measure.scale or float(np.sqrt(np.mean(exact**2))))
 
 

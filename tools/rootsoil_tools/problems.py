@@ -38,7 +38,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Cost:
-    """What the runs did, mean over samples: cells that move, steps, simulated hours, their own inertia error (share of p,
+    """What the runs did, mean over samples: cells, steps, simulated hours, their own inertia error (share of p,
     mean over the second half). NaN where there is none."""
 
     cells: float
@@ -83,10 +83,9 @@ def changes_of(choice: Choice, step_h: float) -> Changes:
 
 
 def run_cost(run: Run, summary: Mapping[str, Any]) -> Cost:
-    """Of one run. Cells at rest take no steps."""
-    history = run.history()
-    inertia, resting = history["inertia_error"], history.get("cells_at_rest", np.zeros(1))
-    cells = (summary["cells_start"] + summary["cells_end"]) / 2.0 - float(resting.mean())
+    """Of one run."""
+    inertia = run.history()["inertia_error"]
+    cells = (summary["cells_start"] + summary["cells_end"]) / 2.0
     return Cost(cells, summary["steps"], summary["time_h"], float(inertia[len(inertia) // 2 :].mean()))
 
 

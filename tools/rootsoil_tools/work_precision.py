@@ -182,14 +182,18 @@ def draw_panel(axes: Axes, points: Sequence[Point]) -> None:
 COSTS = {"cpu_s": "processor time (s)", "cell_steps": "cells x steps"}
 
 
+def only_time(problem: Problem) -> bool:
+    """Grains cost more than cells, and cells at rest nothing."""
+    return problem.soil or problem.name == "sleep"
+
+
 def draw_picture(rows: Sequence[Row], pairs: Sequence[tuple[str, str]], problems: dict[str, Problem], path: Path) -> bool:
-    """Two panels for each problem and measure that has runs, one where it has soil: there the cells are not the cost.
-    False where there are none."""
+    """Two panels for each problem and measure that has runs, one where only time is the cost. False where there are none."""
     panels = [
         (problem, measure, cost)
         for problem, measure in pairs
         if problem in problems
-        for cost in (("cpu_s",) if problems[problem].soil else COSTS)
+        for cost in (("cpu_s",) if only_time(problems[problem]) else COSTS)
         if points_of(rows, problem, measure, cost)
     ]
     if not panels:
@@ -207,11 +211,11 @@ def draw_picture(rows: Sequence[Row], pairs: Sequence[tuple[str, str]], problems
         axes = paper.place(figure, left, bottom, 72.0, height)
         draw_panel(axes, points)
         axes.set_xlabel(COSTS[cost] + (", all samples" if problems[problem].soil else ""), labelpad=1.0)
-        if left < 90.0 or problems[problem].soil:
+        if left < 90.0 or only_time(problems[problem]):
             axes.set_ylabel("relative error")
         if cost == "cpu_s":
             name = f"{problems[problem].title}: {problems[problem].measure(measure).meaning}"
-            wrapped = textwrap.fill(name, 50 if problems[problem].soil else 120)
+            wrapped = textwrap.fill(name, 50 if only_time(problems[problem]) else 120)
             figure.text(left / 180.0, (bottom + height + 1.5) / total, wrapped, size=7.5, va="bottom")
             paper.letter(figure, left - 11.0, bottom + height + 1.0, "ABCDEFGH"[len({p[:2] for p in panels[: index + 1]}) - 1])
     handles = [
