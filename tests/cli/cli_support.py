@@ -67,8 +67,8 @@ s_d_per_mm2 = 4.0
 [[obstacle]]
 name = "wall"
 shape = "plane"
-position_mm = [0.31, -0.03]
-angle_deg = 20.0
+position_mm = [0.34, -0.03]
+angle_deg = 60.0
 """,
 }
 
