@@ -42,7 +42,7 @@ SectionSpec soil_section() {
     soil_key(&So::box_to_mm, "box_to_mm", "mm", place_mm, "Opposite corner; the root grows towards x = to.", "docs/soil.md")
         .required(),
     soil_key(&So::walls, "walls", "-", one_of({"rigid", "servo", "mixed"}),
-        "rigid: all stand still; servo: all keep the pressure; mixed: servo, but the one at x = to stands still.",
+        "rigid: all stand still once the root is in; servo: all keep the pressure; mixed: servo, but the one at x = to stands still.",
         "docs/soil.md"),
     soil_key(&So::confining_pressure_MPa, "confining_pressure_MPa", "MPa", at_least(0).up_to(10, pascals),
         "Pressure of packing and of servo walls.", "docs/soil.md").required(),

@@ -197,7 +197,7 @@ class Soil:
     def _engines(self) -> list[Any]:
         recipe = self.recipe
         engines = [wrapper.ForceResetter(), *contact_engines(recipe)]
-        if recipe["walls"] != "rigid":
+        if recipe["walls"] != "rigid" or not recipe["grains_file"]:
             pressure = recipe["confining_pressure_MPa"]
             flat = recipe["dimension"] == 2
             engines.append(
@@ -318,6 +318,11 @@ class Soil:
             self.progress(f"settling around the root: unbalanced {unbalanced:.3f}")
             if not isfinite(unbalanced) or unbalanced < SETTLED:
                 break
+        if self.recipe["walls"] == "rigid":  # making room has cost pressure; from now on they stand still
+            for engine in O.engines:
+                engine.dead = engine.dead or isinstance(engine, wrapper.TriaxialStressController)
+            for wall in self.wall_ids:
+                O.bodies[wall].state.vel = vector((0, 0, 0))
         self.numbers["soil_settled_unbalanced"] = unbalanced if isfinite(unbalanced) else 0.0  # without a contact
         self.placed = True
 

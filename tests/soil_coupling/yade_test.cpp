@@ -300,6 +300,17 @@ TEST_F(Yade, APackedSampleIsAtRestUnderItsPressureAndKept) {
               AllOf(HasSubstr("not a soil sample of this version"), HasSubstr("2018.02b")));
 }
 
+/// Making room for the root takes nearly all of it away; walls keep it until the root is in, and only then stand still.
+TEST_F(Yade, BetweenRigidWallsGrainsBeginUnderTheConfiningPressure) {
+  SoilRecipe r = test::packed_grains();
+  r.walls = "rigid";
+  YadeSoil s = soil(r);
+  const SurfaceForces f = s.advance(push(0.3, 0.0));
+  const double whole_N = r.confining_pressure_MPa * (r.box_to_mm[0] - r.box_from_mm[0]);
+  EXPECT_NEAR(f.numbers.at("soil_wall_y_to_N"), whole_N, 0.1 * whole_N);
+  EXPECT_NEAR(f.numbers.at("soil_wall_y_from_N"), -whole_N, 0.1 * whole_N);
+}
+
 TEST_F(Yade, AMovableStoneKeepsItsSizeAndPlaceInPacking) {
   SoilRecipe r = test::packed_grains();
   r.obstacles = {{.name = "stone", .shape = "stone", .position_mm = {3, 0, 0}, .radius_mm = 0.5, .movable = true}};

@@ -248,11 +248,11 @@ everywhere at E_R/E_A = 15, and breaks there within a few tenths of an hour.
 ## What to do with it
 
 {advice}
-- **Width.** At least three cells across; below, see `two_wide`.
+- **Width.** One, two and three cells across are stable; what they bend like is another matter (docs/accuracy_cost.md).
 - **Contact.** Keep the tip's way in a step below 1/1000 of a cell, as these cases do. Growing tissue yields: pressed for hours it
   folds, and where it folds stress is concentrated.
 - **Not in the model.** A root that meets itself does not notice: a root of very unequal cells (`irregular`), which curls, does so
-  after 16 h and breaks then; so does one of 10 mm and more without anything that steers it after 90 h, whose stress gets noisy then.
+  after 20 h, and its stress gets noisy then.
 
 ## Criteria
 
