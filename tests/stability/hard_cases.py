@@ -223,7 +223,7 @@ def cases() -> list[Case]:
         Case("soil_stiff", "YADE: grains 20 times as stiff as usual, root in contact from the start",
              {**GRAINS, "soil.E_MPa": 5000.0}, 0.02, 0.5, {"contact_N": (1e-3, 0.01)}, needs_yade=True),
         Case("soil_squeezed", "YADE: grains between the tip and a wall that stands still two grains ahead",
-             {**GRAINS, "soil.box_to_mm": [2.0, 1.2]}, 0.02, 0.6, {"contact_N": (1e-3, 0.05)}, needs_yade=True),
+             {**GRAINS, "soil.box_to_mm": [2.0, 1.2]}, 0.02, 2.0, {"contact_N": (1e-3, 0.15)}, needs_yade=True),
         Case("soil_servo", "YADE: servo walls on all sides of some 50 grains, at a tenth of the usual pressure",
              {**GRAINS, "soil.walls": "servo", "soil.confining_pressure_MPa": 0.004}, 0.02, 0.5, needs_yade=True),
     ]  # fmt: skip
