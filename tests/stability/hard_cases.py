@@ -187,7 +187,7 @@ def cases() -> list[Case]:
         Case("curved", "bent to a radius of 0.2 mm; later it meets itself", {"root.curvature_per_mm": 5.0}, 2.0, 18.0),
         Case("head_on", "grows straight onto a wall", in_contact(plane(0.62, 90.0)), 0.6, 4.0,
              {"contact_N": (0.05, 0.05)}, restart=True),
-        Case("glancing", "meets a wall at 15 degrees", in_contact(plane(0.62, 15.0, -0.08)), 1.4, 6.0,
+        Case("glancing", "meets a wall at 15 degrees", in_contact(plane(0.62, 15.0, -0.08)), 1.8, 6.0,
              {"contact_N": (1e-4, 1e-4)}),
         Case("corner_on_axis", "grows onto the sharp corner of a box", in_contact(corner(0.62, 0.0)), 0.6, 4.0,
              {"contact_N": (0.01, 0.01)}),
