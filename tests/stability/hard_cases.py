@@ -217,7 +217,7 @@ def cases() -> list[Case]:
              0.05, 1.5),
         Case("soil_arrested", "soil's plate arrests the root for 10 h", {"numerics.step_h": 1e-4}, 0.6, 10.5,
              {"contact_N": (0.1, 0.1)}, twin=(), restart=True,
-             remark="quiet for 9 h (0.34); then the growth zone, which yields, folds. " + LOCKED + "0.40"),
+             remark="quiet for 9 h (0.35); then the growth zone, which yields, folds. " + LOCKED + "0.40"),
         Case("soil_release", "soil's plate arrests the root for 0.2 h and lets go at once", {"numerics.step_h": 1e-4},
              0.6, 2.0, {"contact_N": (0.1, 0.1), "stretch": (1.03, 1.2)}, twin=("--gone-at", "0.35")),
         Case("soil_stiff", "YADE: grains 20 times as stiff as usual, root in contact from the start",
