@@ -19,9 +19,9 @@ struct Preset {
 // for their time, and lose in bending or under pressure (docs/accuracy_cost.md). At 0.04 cells a step the tip of the 50
 // h main job leaves its axis (docs/decisions/0003): 0.7 um at 50 h, growing as exp(0.13 t).
 constexpr Preset presets[] = {
-    {"fast", 1.5, 20, "quadratic_at_surface", {0.02, 1e-3}, {0.0062, 0.0022, 0.46}},
-    {"balanced", 1.5, 20, "quadratic_at_surface", {0.01, 1e-3}, {0.0058, 0.00016, 0.78}},
-    {"reference", 1.5, 20, "quadratic_at_surface", {0.005, 1e-3}, {0.0058, 0.00034, 1.5}},
+    {"fast", 1.5, 20, "quadratic_at_surface", {0.02, 1e-3}, {0.0075, 0.0019, 0.46}},
+    {"balanced", 1.5, 20, "quadratic_at_surface", {0.01, 1e-3}, {0.0072, 0.00013, 0.75}},
+    {"reference", 1.5, 20, "quadratic_at_surface", {0.005, 1e-3}, {0.0072, 0.00031, 1.48}},
 };
 
 const Preset& find_preset(std::string_view accuracy) {

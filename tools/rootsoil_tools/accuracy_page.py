@@ -284,15 +284,15 @@ What the tables below say:
 - **Cells across** decide the error in growth, bending and contact. The **step** decides inertia; below twice balanced's it no
   longer shows in the strain rate, so that `fast` is nearly as exact as `balanced` where nothing is touched. Strain under
   pressure is exact to 0.1 % with any number of cells.
-- Keep the cell-shaped kernel: isotropic ones take 2 to 8 times the time and are less exact, the wide ones by far. A smaller
-  kernel (eta 1.2) halves the error in growth, a larger one (eta 2) quarters it in bending; each makes the other worse.
+- Keep the cell-shaped kernel: isotropic ones take 2 to 9 times the time and are less exact, the wide ones by far. A larger
+  kernel (eta 2) has a seventh to a third of the error in bending, for a third more in growth and in time.
 - Keep the corrected gradient (plain: nothing comes out right), quadratic at surfaces (linear: bending is soft). Quadratic
-  everywhere has a third of the error in growth and twice that in bending and contact.
-- Keep the compensation of inertia: without it the same step has ten to thirty times the error in growth.
+  everywhere has three quarters of the error in growth and twice that in bending and contact.
+- Keep the compensation of inertia: without it the same step has ten to twenty times the error in growth.
 - The predictor-corrector takes nearly twice the time for the same result; so do short windows, of which only the lengths of
   dividing cells gain: cells divide between windows.
 - Non-affine control costs a fifth of the time; bending and contact need it.
-- A path along an obstacle needs the small step of a quasi-static contact first, then cells.
+- A path along an obstacle needs cells: nothing else matters much to it.
 - Sleep (`[sleep]`) with its default tolerances takes half the time where most of a root is mature, and changes growth
   by less than a thousandth of a percent.
 - In soil keep the inertial number at 0.01 or below: at 0.1 the forces are twice as large. The other choices make no difference
