@@ -194,7 +194,7 @@ for fields, phases and pair terms that nobody called for.
 ## What each costs and buys
 
 Processor time of the first {steps} steps with the effect, against the same scene without it (share of the whole; median of
-{pairs} pairs run in turn, one thread, noise some 2 %), and the memory that goes with it.
+{pairs} pairs run in turn, one thread, noise some 5 %), and the memory that goes with it.
 
 {shares}
 
@@ -214,7 +214,7 @@ or the differential itself does, all wake; cells in contact with an `[[obstacle]
 {sleep}
 
 Without `[sleep]` the cost of an hour follows the root's length, with it the length of the part that grows. What it does to the
-results is measured above and in tests/physics/sleep_test.cpp (places of cells within 0.1 % of a cell after an hour; force on a
+results is measured above and in tests/physics/sleep_test.cpp (places of cells within 0.5 % of a cell after an hour; force on a
 plate within 2 %; same bits after a pause).
 
 """
