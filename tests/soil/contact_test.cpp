@@ -226,8 +226,7 @@ void expect_good(const PlateForce& force) {
   EXPECT_LT(force.noise, 0.03);
 }
 
-/// At 70 N/mm the force is 3 % too large, at 100 N/mm 5 %: with little inertia a stiff plate is fed by the interval's prediction
-/// (docs/decisions/0017).
+/// At 70 N/mm the force is 3 % too large, at 100 N/mm 5 % (docs/decisions/0017).
 TEST(Thrust, OnAFixedPlateTheForceIsSteadyAndThatOfAnObstacle) {
   SoilRun<2> soil({}, predicting(), [](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, 50.0)); });
   const PlateForce by_soil = press(soil);
