@@ -319,8 +319,7 @@ class Soil:
             if not isfinite(unbalanced) or unbalanced < SETTLED:
                 break
         if self.recipe["walls"] == "rigid":  # making room has cost pressure; from now on they stand still
-            for engine in O.engines:
-                engine.dead = engine.dead or isinstance(engine, wrapper.TriaxialStressController)
+            O.engines = [engine for engine in O.engines if not isinstance(engine, wrapper.TriaxialStressController)]
             for wall in self.wall_ids:
                 O.bodies[wall].state.vel = vector((0, 0, 0))
         self.numbers["soil_settled_unbalanced"] = unbalanced if isfinite(unbalanced) else 0.0  # without a contact

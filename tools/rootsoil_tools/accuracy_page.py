@@ -261,7 +261,7 @@ PAGE = """\
 <!-- Written by tools/accuracy_cost.py. What is changed here is lost. -->
 # What accuracy costs
 
-Small problems with known answers, computed in many ways. `tools/accuracy_cost.py` runs them, in about an hour on one core,
+Small problems with known answers, computed in many ways. `tools/accuracy_cost.py` runs them, in 35 minutes on one core,
 and writes this page, its pictures and [accuracy_cost.csv](accuracy_cost.csv), a row for each run and measure; it goes on
 where it was stopped, and `--part 1/2` and `--part 2/2` share the runs between two cores. Errors are those against the closed
 form, and only where there is none against the finest run. Times are processor time of one thread, starting the program
@@ -292,7 +292,7 @@ What the tables below say:
 - The predictor-corrector takes nearly twice the time for the same result; so do short windows, of which only the lengths of
   dividing cells gain: cells divide between windows.
 - Non-affine control costs a fifth of the time; bending and contact need it.
-- A path along an obstacle needs cells: nothing else matters much to it.
+- A path along an obstacle needs cells: from 8 across on nothing else matters much to it.
 - Sleep (`[sleep]`) with its default tolerances takes half the time where most of a root is mature, and changes growth
   by less than a thousandth of a percent.
 - In soil keep the inertial number at 0.01 or below: at 0.1 the forces are twice as large. The other choices make no difference

@@ -328,7 +328,7 @@ def write_page(cases: list[CaseRow], edges: list[EdgeRow], remarks: Mapping[str,
         rows.append([f"`{name}`", first.meaning, f"{first.hours:g}", verdict(schemes["default"]) + why, paper_says])
     restarts = [row for row in cases if row.criterion == "restart"]
     page = PAGE.format(
-        minutes="some four minutes of processor time",
+        minutes="nine minutes beside another program",
         count=count,
         advice=advice(edges),
         criteria=markdown(
