@@ -14,14 +14,17 @@ find_package(Threads REQUIRED)
 add_library(rootsoil_flags INTERFACE)
 target_include_directories(rootsoil_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(rootsoil_flags INTERFACE -Wall -Wextra -Wshadow -Wno-psabi
-  # GCC 12 warns about its own AVX-512 headers
-  -Wno-maybe-uninitialized
+  # GCC 12 warns about its own AVX-512 headers (GCC bug 105593); clang-tidy and cppcheck look for the fault itself.
+  -Wno-maybe-uninitialized -Wno-uninitialized
   # errno and floating-point traps are never read; this keeps results
   # deterministic (unlike -ffast-math) and lets the compiler vectorise
   -fno-math-errno -fno-trapping-math
   # The compiler may keep several copies of a loop's body (first iteration, rest) and fuse other products in each: the last
   # bits of a cell would depend on where a thread's share begins
   -ffp-contract=off)
+if(ROOTSOIL_WERROR)
+  target_compile_options(rootsoil_flags INTERFACE -Werror)
+endif()
 if(ROOTSOIL_NATIVE)
   target_compile_options(rootsoil_flags INTERFACE -march=native)
 endif()
@@ -33,4 +36,3 @@ if(ROOTSOIL_SANITIZE)
     -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(rootsoil_flags INTERFACE -fsanitize=${ROOTSOIL_SANITIZE})
 endif()
-target_compile_definitions(rootsoil_flags INTERFACE ROOTSOIL_VERSION="${PROJECT_VERSION}")

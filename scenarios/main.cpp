@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The command line. What the commands do is in root_sph/scene.
+// The command line. What the commands do is in root_sph/app.
+#include <omp.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -15,11 +16,13 @@
 #include <string>
 #include <vector>
 
+#include "root_sph/app/commands.hpp"
+#include "root_sph/app/shipped_scenes.hpp"
 #include "root_sph/core/errors.hpp"
-#include "root_sph/scene/commands.hpp"
-#include "root_sph/scene/read_scene.hpp"
-#include "root_sph/scene/schema.hpp"
-#include "root_sph/scene/soil_start.hpp"
+#include "root_sph/core/interruption.hpp"
+#include "root_sph/core/version.hpp"
+#include "root_sph/effects/soil_contact/soil_section.hpp"
+#include "root_sph/effects/table.hpp"
 #include "soil_coupling/penetrometer.hpp"
 #include "soil_coupling/yade_soil.hpp"
 
@@ -27,14 +30,10 @@ namespace {
 
 using namespace rootsoil;
 
-namespace {
-
 /// The soil of a scene that has one: YADE, in a process of its own.
-Soil yade_soil(const Scene& scene, const SoilStart& start) {
-  return {make_yade_soil(*scene.soil, start), soil_contact_parameters(scene)};
+std::unique_ptr<SoilPort> yade_soil(const Scene& scene, const SoilStart& start) {
+  return make_yade_soil(*scene.find<SoilSection>(), start);
 }
-
-}  // namespace
 
 constexpr int bad_usage = static_cast<int>(ExitStatus::bad_input);
 constexpr int our_mistake = 1;
@@ -48,14 +47,36 @@ const CLI::Validator positive(
     "NUMBER");
 
 /// Many more than a machine has cores only cost memory: threads beyond some thousands end the program.
+constexpr int most_threads = 256;
+
 const CLI::Validator thread_count(
     [](const std::string& text) {
-      constexpr int most = 256;
       int number = 0;
-      const bool good = CLI::detail::lexical_cast(text, number) && number >= 1 && number <= most;
-      return good ? std::string() : text + " is not a whole number from 1 to " + std::to_string(most);
+      const bool good = CLI::detail::lexical_cast(text, number) && number >= 1 && number <= most_threads;
+      return good ? std::string() : text + " is not a whole number from 1 to " + std::to_string(most_threads);
     },
     "NUMBER");
+
+/// Where the command line says nothing OpenMP offers the machine's cores, or what the environment asks for. Before any
+/// thread is started.
+void limit_threads() {
+  const char* given = std::getenv("OMP_NUM_THREADS");
+  // more than fit into an int come out negative
+  const int offered = std::min(omp_get_max_threads(), omp_get_thread_limit());
+  const bool fits = offered >= 1 && offered <= most_threads;
+  if (!given && !fits) return omp_set_num_threads(most_threads);  // a very large machine
+  // a list is one number for each level of nested loops; OpenMP takes all cores where it can't read the first
+  const std::string first = given ? std::string(given).substr(0, std::string(given).find(',')) : "1";
+  int number = 0;
+  if (fits && CLI::detail::lexical_cast(CLI::detail::trim_copy(first), number) && number >= 1) return;
+  throw InputError({.file = {},
+                    .line = 0,
+                    .key = "OMP_NUM_THREADS",
+                    .what = "the environment asks for a number of threads that no machine has or gains from",
+                    .given = given && *given ? given : "nothing",
+                    .allowed = "1 to " + std::to_string(most_threads),
+                    .remedy = "unset it, or give run --threads"});
+}
 
 /// CLI11 answers a misspelt command with "a subcommand is required".
 void check_command(const CLI::App& app, const std::string& given) {
@@ -72,7 +93,9 @@ void check_command(const CLI::App& app, const std::string& given) {
 }
 
 int command_line(int argc, char** argv) {
-  CLI::App app{"rootsoil " ROOTSOIL_VERSION ": mechanical growth of plant roots, cell by cell", "rootsoil"};
+  const std::string version = std::string("rootsoil ") + program_version;
+  CLI::App app{version + ": mechanical growth of plant roots, cell by cell", "rootsoil"};
+  app.set_version_flag("--version", version, "Print the version");
   app.require_subcommand(1);
   app.failure_message([](const CLI::App*, const CLI::Error& e) {
     return std::string("rootsoil: ") + e.what() + "\n  to do:   --help, also after a command, lists what there is\n";
@@ -84,7 +107,7 @@ int command_line(int argc, char** argv) {
   std::optional<std::string> accuracy;
   RunOptions options;
   CLI::App* run = app.add_subcommand("run", "Run a scene");
-  run->add_option("SCENE", scene_file, "Scene file (TOML)")->required();
+  run->add_option("SCENE", scene_file, "Scene file (TOML), or the name of a shipped scene")->required();
   run->add_option("--out", options.out, "Folder of the run; otherwise runs/<scene name>");
   run->add_option("--threads", options.threads, "Number of threads; otherwise all")->check(thread_count);
   run->add_flag("--resume", options.resume, "Go on from the last checkpoint in the folder");
@@ -92,23 +115,24 @@ int command_line(int argc, char** argv) {
       ->allow_extra_args(false);
   run->add_option("--accuracy", accuracy, "fast, balanced or reference");
   run->add_option("--until", options.until_h, "Stop at this simulated time, in hours")->check(positive);
-  run->add_flag("--quiet", options.quiet, "No progress");
+  run->add_flag("--quiet", options.quiet, "Only warnings and errors");
   run->callback([&] {
     command = [&] {
-      const Scene scene = read_scene(scene_file, overrides, accuracy);
+      const Scene scene = read_scene(find_scene(scene_file), overrides, accuracy);
       if (options.out.empty()) options.out = std::filesystem::path("runs") / scene.scene.name;
-      return scene.soil ? run_scene(scene, options, yade_soil) : run_scene(scene, options);
+      return run_scene(scene, options, yade_soil);
     };
   });
 
   bool json = false;
   CLI::App* check = app.add_subcommand("check", "Say what a scene would do and cost, without running it");
-  check->add_option("SCENE", scene_file, "Scene file (TOML)")->required();
+  check->add_option("SCENE", scene_file, "Scene file (TOML), or the name of a shipped scene")->required();
   check->add_option("--set", overrides, "section.key=value, replaces what the scene says; can be repeated")
       ->allow_extra_args(false);
   check->add_option("--accuracy", accuracy, "fast, balanced or reference");
   check->add_flag("--json", json, "For programs");
-  check->callback([&] { command = [&] { return check_scene(read_scene(scene_file, overrides, accuracy), json); }; });
+  check->callback(
+      [&] { command = [&] { return check_scene(read_scene(find_scene(scene_file), overrides, accuracy), json); }; });
 
   std::filesystem::path run_folder, csv;
   std::string time = "last";
@@ -127,12 +151,13 @@ int command_line(int argc, char** argv) {
   penetrometer->add_option("--out", options.out, "Folder of the results; otherwise runs/<scene name>_penetrometer");
   penetrometer->add_option("--set", overrides, "section.key=value, replaces what the file says; can be repeated")
       ->allow_extra_args(false);
-  penetrometer->add_flag("--quiet", options.quiet, "No progress");
+  penetrometer->add_flag("--quiet", options.quiet, "Only warnings and errors");
   penetrometer->callback([&] {
     command = [&] {
-      const Scene scene = read_soil(scene_file, overrides);
+      const Scene scene = read_soil(find_scene(scene_file), overrides);
       if (options.out.empty()) options.out = std::filesystem::path("runs") / (scene.scene.name + "_penetrometer");
-      return run_penetrometer(*scene.soil, *scene.penetrometer, options.out, options.quiet);
+      return run_penetrometer(*scene.find<SoilSection>(), *scene.find<PenetrometerSection>(), options.out,
+                              options.quiet);
     };
   });
 
@@ -141,14 +166,14 @@ int command_line(int argc, char** argv) {
   describe_->add_option("SECTION", section, "One section, for example growth");
   describe_->callback([&] {
     command = [&] {
-      std::cout << describe(section);
+      std::cout << language().describe(section);
       return 0;
     };
   });
 
   app.add_subcommand("version", "Print the version")->callback([&] {
-    command = [] {
-      std::cout << "rootsoil " ROOTSOIL_VERSION "\n";
+    command = [&version] {
+      std::cout << version << '\n';
       return 0;
     };
   });
@@ -159,6 +184,7 @@ int command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : bad_usage;  // --help is one of them
   }
+  if (options.threads == 0) limit_threads();
   return command();
 }
 
@@ -174,6 +200,7 @@ void wait_politely(char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  end_at_once_when_interrupted();
   wait_politely(argv);
   const auto report = [](const std::string& text, int status) {
     std::cerr << "rootsoil: " << text << '\n';

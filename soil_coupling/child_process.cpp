@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -22,7 +24,8 @@ namespace rootsoil {
 namespace {
 
 constexpr int first_inherited = 3;
-constexpr int out_of_the_way = 64;
+constexpr std::size_t most_inherited = 8;
+constexpr int out_of_the_way = first_inherited + static_cast<int>(most_inherited);
 
 std::vector<std::string> environment_of(const ChildCommand& command) {
   std::vector<std::string> result;
@@ -30,12 +33,13 @@ std::vector<std::string> environment_of(const ChildCommand& command) {
     const std::string text = *entry;
     if (!command.environment.contains(text.substr(0, text.find('=')))) result.push_back(text);
   }
-  for (const auto& [name, value] : command.environment) result.push_back(name + "=" + value);
+  for (const auto& [name, value] : command.environment) result.push_back(fmt::format("{}={}", name, value));
   return result;
 }
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
   std::vector<char*> result;
+  result.reserve(texts.size() + 1);
   for (std::string& text : texts) result.push_back(text.data());
   result.push_back(nullptr);
   return result;
@@ -48,15 +52,18 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   signal(SIGINT, SIG_IGN);            // Ctrl-C goes to both; this process decides when the other one stops
   signal(SIGPIPE, SIG_DFL);
   signal(SIGXFSZ, SIG_DFL);
-  const int nothing = open("/dev/null", O_RDWR);
+  // first out of the way, then into place: source and target numbers may overlap, also with the standard streams',
+  // which the program's caller may have closed
+  const int nothing = fcntl(open("/dev/null", O_RDWR), F_DUPFD, out_of_the_way);
+  const int output = command.output >= 0 ? fcntl(command.output, F_DUPFD, out_of_the_way) : nothing;
+  std::array<int, most_inherited> moved;
+  std::transform(command.descriptors.begin(), command.descriptors.end(), moved.begin(),
+                 [](int fd) { return fcntl(fd, F_DUPFD, out_of_the_way); });
   dup2(nothing, STDIN_FILENO);
-  dup2(command.output >= 0 ? command.output : nothing, STDOUT_FILENO);
-  dup2(STDOUT_FILENO, STDERR_FILENO);
-  // first out of the way, then into place: source and target numbers may overlap
-  int moved = out_of_the_way;
-  for (const int fd : command.descriptors) dup2(fd, moved++);
+  dup2(output, STDOUT_FILENO);
+  dup2(output, STDERR_FILENO);
   int target = first_inherited;
-  for (int fd = out_of_the_way; fd < moved; ++fd) dup2(fd, target++);
+  for (std::size_t k = 0; k < command.descriptors.size(); ++k) dup2(moved[k], target++);
   close_range(static_cast<unsigned>(target), ~0U, 0);
   execve(arguments[0], arguments, environment);
   _exit(127);
@@ -73,6 +80,7 @@ std::string describe_end(int status) {
 }  // namespace
 
 ChildProcess::ChildProcess(const ChildCommand& command) {
+  ROOTSOIL_ASSERT(command.descriptors.size() <= most_inherited);
   const std::string& program = command.arguments.at(0);
   if (access(program.c_str(), X_OK) != 0) {
     throw SoilError(fmt::format("the soil process can't be started: {}: {}", program, std::strerror(errno)));

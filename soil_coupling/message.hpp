@@ -22,7 +22,7 @@
 namespace rootsoil {
 
 inline constexpr std::uint32_t packet_magic = 0x4C494F53;  // "SOIL"
-inline constexpr std::uint16_t protocol_version = 1;
+inline constexpr std::uint16_t protocol_version = 2;
 inline constexpr std::size_t text_room = 65536;
 inline constexpr std::size_t column_alignment = 64;
 inline constexpr std::size_t progress_room = 512;
@@ -31,7 +31,7 @@ enum class Kind : std::uint16_t {
   // requests
   hello = 1,     ///< who are you? Answer: text with versions
   pack = 2,      ///< text: recipe. Makes a sample file
-  build = 3,     ///< text: recipe and start; columns: body. Loads the sample, makes room for the root
+  build = 3,     ///< text: recipe and start; columns: body, then listed grains in the same way. Makes room for the root
   advance = 4,   ///< columns: motion. Answer: columns forces, text with numbers
   snapshot = 5,  ///< Answer: columns grains, then contacts; text with their numbers
   save = 6,      ///< text: file

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -59,7 +60,7 @@ void write_csv(const PenetrometerResult& result, const std::filesystem::path& pa
     file << fmt::format("{},{},{},{},{},{}\n", r.seed, r.depth_mm, r.Q_MPa, r.shaft_force_N, r.inertial_number,
                         r.overlap_max);
   }
-  if (!file.flush()) throw FileError(fmt::format("{}: can't be written; is the disk full?", path.string()));
+  if (!file.flush()) throw FileError(fmt::format("{}: can't be written", path.string()), file_remedy(errno));
 }
 
 }  // namespace
@@ -93,13 +94,13 @@ PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe
   const Rod rod = make_rod(probe, probe.depth_mm);
   const double area = section(probe, recipe.dimension);
   const auto intervals =
-      static_cast<std::int64_t>(std::ceil(probe.depth_mm / (probe.rate_mm_h * probe.interval_h) - 1e-9));
+      std::max<std::int64_t>(1, std::llround(std::ceil(probe.depth_mm / (probe.rate_mm_h * *probe.interval_h) - 1e-9)));
   const double step_mm = probe.depth_mm / static_cast<double>(intervals);
   std::vector<double> fluctuations, inertial_numbers;
   const auto push = [&](std::int64_t k) {
     SoilRecipe own = recipe;
     own.seed = recipe.seed + k;
-    if (probe.friction_deg >= 0.0) own.root_friction_deg = probe.friction_deg;
+    if (probe.friction_deg) own.root_friction_deg = *probe.friction_deg;
     SoilStart start;
     start.root_speed_mm_h = probe.rate_mm_h;
     start.root_diameter_mm = probe.diameter_mm;
@@ -124,7 +125,7 @@ PenetrometerResult penetrate(const SoilRecipe& recipe, const Penetrometer& probe
       reading.inertial_number = forces.numbers.at("soil_inertial_number");
       reading.overlap_max = forces.numbers.at("soil_overlap_max");
       result.readings.push_back(reading);
-      if (reading.depth_mm >= probe.average_from_mm) averaged.push_back(reading.Q_MPa);
+      if (reading.depth_mm >= *probe.average_from_mm) averaged.push_back(reading.Q_MPa);
       inertial_numbers.push_back(reading.inertial_number);
       if (progress) {
         const double spent_s = std::chrono::duration<double>(Clock::now() - began).count();
@@ -162,7 +163,7 @@ int run_penetrometer(const SoilRecipe& recipe, const Penetrometer& probe, const 
   }
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(fmt::format("{}: {}", folder.string(), error.message()));
+  if (error) throw FileError(fmt::format("{}: {}", folder.string(), error.message()), file_remedy(error.value()));
   const Interruption interruption;
   ProgressLine line(quiet);
   const PenetrometerResult result = penetrate(recipe, probe, make_yade_soil, [&](const std::string& text) {
@@ -187,9 +188,9 @@ int run_penetrometer(const SoilRecipe& recipe, const Penetrometer& probe, const 
                                  {"diameter_mm", probe.diameter_mm},
                                  {"cone_angle_deg", probe.cone_angle_deg},
                                  {"rate_mm_h", probe.rate_mm_h},
-                                 {"averaged_mm", {probe.average_from_mm, probe.depth_mm}}};
+                                 {"averaged_mm", {*probe.average_from_mm, probe.depth_mm}}};
   fmt::print("Q = {:.4g} MPa, +- {:.2g} between {} seeds, +- {:.2g} along the way ({:.3g} to {:.3g} mm)\n",
-             result.Q_MPa, result.Q_deviation_MPa, probe.seeds, result.Q_fluctuation_MPa, probe.average_from_mm,
+             result.Q_MPa, result.Q_deviation_MPa, probe.seeds, result.Q_fluctuation_MPa, *probe.average_from_mm,
              probe.depth_mm);
   fmt::print("Q/P = {:.3g} at P = {:.3g} MPa, inertial number {:.2g}\n", P > 0.0 ? result.Q_MPa / P : 0.0, P,
              result.inertial_number);
@@ -204,7 +205,7 @@ int run_penetrometer(const SoilRecipe& recipe, const Penetrometer& probe, const 
   }
   std::ofstream file(json);
   file << summary.dump(2) << '\n';
-  if (!file.flush()) throw FileError(fmt::format("{}: can't be written; is the disk full?", json.string()));
+  if (!file.flush()) throw FileError(fmt::format("{}: can't be written", json.string()), file_remedy(errno));
   fmt::print("wrote {}\n", csv.string());
   return 0;
 }

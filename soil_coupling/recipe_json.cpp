@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "root_sph/core/digest.hpp"
+
 namespace rootsoil {
 namespace {
 
@@ -12,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 Json obstacle_json(const SoilObstacle& o) {
   return {{"name", o.name},
-          {"shape", o.shape},
+          {"shape", name_of(o.shape)},
           {"position_mm", o.position_mm},
           {"half_size_mm", o.half_size_mm},
           {"length_mm", o.length_mm},
@@ -26,7 +28,7 @@ Json obstacle_json(const SoilObstacle& o) {
 Json obstacles_json(const SoilRecipe& recipe, bool packing_only) {
   Json list = Json::array();
   for (const SoilObstacle& o : recipe.obstacles) {
-    if (!packing_only || o.shape != "gap") list.push_back(obstacle_json(o));
+    if (!packing_only || o.shape != SoilShape::gap) list.push_back(obstacle_json(o));
   }
   return list;
 }
@@ -38,7 +40,7 @@ Json packing_json(const SoilRecipe& r) {
           {"confining_pressure_MPa", r.confining_pressure_MPa},
           {"d_min_mm", r.d_min_mm},
           {"d_max_mm", r.d_max_mm},
-          {"contact_law", r.contact_law},
+          {"contact_law", name_of(r.contact_law)},
           {"E_MPa", r.E_MPa},
           {"poisson", r.poisson},
           {"friction_deg", r.friction_deg},
@@ -48,6 +50,14 @@ Json packing_json(const SoilRecipe& r) {
           {"damping", r.damping},
           {"seed", r.seed},
           {"obstacles", obstacles_json(r, true)}};
+}
+
+/// "" without grains.
+std::string digest_of(const std::vector<SoilGrain>& grains) {
+  std::string text;
+  for (const SoilGrain& g : grains)
+    text += fmt::format("{} {} {} {}\n", g.centre_mm[0], g.centre_mm[1], g.centre_mm[2], g.radius_mm);
+  return text.empty() ? text : digest(text);
 }
 
 }  // namespace
@@ -62,10 +72,10 @@ std::string packing_key(const SoilRecipe& recipe) {
 nlohmann::ordered_json recipe_json(const SoilRecipe& r) {
   Json json = packing_json(r);
   json["obstacles"] = obstacles_json(r, false);
-  json["walls"] = r.walls;
+  json["walls"] = name_of(r.walls);
   json["d_mean_mm"] = r.d_mean_mm;
   json["layer_mm"] = r.layer_mm();
-  json["grains_file"] = r.grains_file;
+  json["listed_grains"] = digest_of(r.grains);  // of what the file says, wherever it lies
   json["root_friction_deg"] = r.root_friction_deg;
   json["cohesion_MPa"] = r.cohesion_MPa;
   json["step_safety"] = r.step_safety;
@@ -73,10 +83,12 @@ nlohmann::ordered_json recipe_json(const SoilRecipe& r) {
   return json;
 }
 
-std::string digest(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const unsigned char c : text) hash = (hash ^ c) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", hash);
+std::string path_code(const std::filesystem::path& path) {
+  std::string code;
+  for (const unsigned char c : path.string()) code += fmt::format("{:02x}", c);
+  return code;
 }
+
+std::string digest(const std::string& text) { return fmt::format("{:016x}", fnv1a(text)); }
 
 }  // namespace rootsoil

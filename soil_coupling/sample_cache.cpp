@@ -2,9 +2,12 @@
 #include "soil_coupling/sample_cache.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "root_sph/core/errors.hpp"
 #include "soil_coupling/recipe_json.hpp"
@@ -28,14 +31,17 @@ fs::path ensure_sample(const SoilRecipe& recipe, const SoilProcessOptions& optio
   const fs::path folder = sample_folder();
   std::error_code error;
   fs::create_directories(folder, error);
+  fs::path sample = folder / ("sample_" + digest(packing_key(recipe)) + ".soil");
+  if (!error && fs::exists(sample)) return sample;
+  // looked at now, and not after minutes of packing
+  if (!error && access(folder.c_str(), W_OK | X_OK) != 0) error.assign(errno, std::generic_category());
   if (error) {
-    throw FileError(
-        fmt::format("{}: {}; set ROOTSOIL_CACHE to a folder for soil samples", folder.string(), error.message()));
+    throw FileError(fmt::format("{}: {}", folder.string(), error.message()),
+                    "set ROOTSOIL_CACHE to a folder for soil samples");
   }
-  const fs::path sample = folder / ("sample_" + digest(packing_key(recipe)) + ".soil");
-  if (fs::exists(sample)) return sample;
   SoilProcess process(options);
-  const std::string task = nlohmann::ordered_json{{"recipe", recipe_json(recipe)}, {"sample", sample.string()}}.dump();
+  const std::string task =
+      nlohmann::ordered_json{{"recipe", recipe_json(recipe)}, {"sample", path_code(sample)}}.dump();
   const Packet answer = process.ask({.kind = Kind::pack, .text = task});
   if (options.progress) {
     const auto made = nlohmann::json::parse(process.text_of(answer), nullptr, false);

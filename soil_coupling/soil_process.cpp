@@ -12,8 +12,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "root_sph/core/errors.hpp"
 
@@ -27,19 +29,27 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 Descriptor open_log(const std::filesystem::path& path) {
   if (path.empty()) return Descriptor(memfd_create("rootsoil-log", MFD_CLOEXEC));
   Descriptor log(open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
-  if (log.get() < 0) throw FileError(fmt::format("{}: {}", path.string(), std::strerror(errno)));
+  if (log.get() < 0) {
+    const int error = errno;
+    throw FileError(fmt::format("{}: {}", path.string(), std::strerror(error)), file_remedy(error));
+  }
   return log;
 }
 
 ChildCommand command_of(const SoilProcessOptions& options, int socket, int block, int log) {
   const std::filesystem::path driver =
       options.driver.empty() ? std::filesystem::path(ROOTSOIL_YADE_SIDE_DIR) / "driver.py" : options.driver;
-  if (!std::filesystem::exists(driver)) {
-    throw SoilError(fmt::format("the soil process can't be started: {} is missing", driver.string()));
+  for (const std::filesystem::path& needed : {driver, std::filesystem::path(ROOTSOIL_NO_TEMPORARY_FOLDER)}) {
+    if (!std::filesystem::exists(needed)) {
+      throw SoilError(fmt::format("the soil process can't be started: {} is missing", needed.string()));
+    }
   }
-  // YADE takes every core otherwise, and waiting threads would take the root's (both read when it is loaded)
-  return {.arguments = {options.python.string(), "-u", "-I", driver.string()},
-          .environment = {{"OMP_NUM_THREADS", std::to_string(options.threads)}, {"OMP_WAIT_POLICY", "passive"}},
+  // YADE takes every core otherwise, and waiting threads would take the root's (both read when it is loaded). Paths are
+  // UTF-8 whatever the locale says.
+  return {.arguments = {options.python.string(), "-u", "-I", "-X", "utf8", driver.string()},
+          .environment = {{"OMP_NUM_THREADS", std::to_string(options.threads)},
+                          {"OMP_WAIT_POLICY", "passive"},
+                          {"ROOTSOIL_NO_TEMPORARY_FOLDER", ROOTSOIL_NO_TEMPORARY_FOLDER}},
           .descriptors = {socket, block},
           .output = log};
 }
@@ -61,6 +71,20 @@ std::string describe(Kind kind) {
     default:
       return "";
   }
+}
+
+/// Without the lists of calls that Python prints before an error, which only say something to its authors; the log has
+/// them.
+std::string without_tracebacks(const std::string& text) {
+  std::string kept;
+  bool in_list = false;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const bool begins = line.starts_with("Traceback (most recent call last)");
+    in_list = begins || (in_list && line.starts_with(' '));
+    if (!in_list) kept += line + '\n';
+  }
+  return kept;
 }
 
 constexpr const char* what_is_kept =
@@ -102,6 +126,7 @@ std::string SoilProcess::last_words() const {
   std::string text(static_cast<std::size_t>(std::min(most, info.st_size)), '\0');
   const ssize_t got = pread(log_.get(), text.data(), text.size(), info.st_size - static_cast<off_t>(text.size()));
   text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, got)));
+  text = without_tracebacks(text);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text.empty() ? text : "\n  it said last:\n" + text;
 }

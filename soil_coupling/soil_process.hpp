@@ -3,7 +3,6 @@
 // what is asked for; yade_soil.hpp does.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <string>

@@ -61,17 +61,26 @@ YadeSoil::YadeSoil(const SoilRecipe& recipe, const SoilStart& start, const SoilP
                                     {"root_speed_mm_h", std::max(start.root_speed_mm_h, 1e-6)},
                                     {"root_diameter_mm", start.root_diameter_mm > 0.0 ? start.root_diameter_mm : 1.0}};
   start_text_ = root.dump();
-  const std::filesystem::path sample =
-      recipe.grains_file.empty() ? ensure_sample(recipe, options) : std::filesystem::path();
+  const std::filesystem::path sample = recipe.grains.empty() ? ensure_sample(recipe, options) : std::filesystem::path();
   process_ = std::make_unique<SoilProcess>(options);
 
   SharedBlock& block = process_->block();
-  const std::size_t rows = start.body_mm.size();
-  block.grow(column_offset(body_table, body_table.size(), rows));
+  const std::size_t rows = start.body_mm.size(), grains = recipe.grains.size();
+  const std::size_t begin = column_offset(body_table, body_table.size(), rows);
+  block.grow(column_offset(body_table, body_table.size(), grains, begin));
   put(block.column<double>(body_table, 0, rows), start.body_mm);
   put(block.column<double>(body_table, 1, rows), start.body_radius_mm);
-  const std::string task =
-      nlohmann::ordered_json{{"recipe", recipe_json(recipe_)}, {"start", root}, {"sample", sample.string()}}.dump();
+  const std::span<double> centre = block.column<double>(body_table, 0, grains, begin),
+                          radius = block.column<double>(body_table, 1, grains, begin);
+  for (std::size_t i = 0; i < grains; ++i) {
+    std::copy_n(recipe.grains[i].centre_mm.begin(), 3, centre.begin() + 3 * i);
+    radius[i] = recipe.grains[i].radius_mm;
+  }
+  const std::string task = nlohmann::ordered_json{
+      {"recipe", recipe_json(recipe_)},
+      {"start", root},
+      {"sample", path_code(sample)},
+      {"grains", grains}}.dump();
   process_->ask({.kind = Kind::build, .text = task, .rows = rows});
 }
 
@@ -137,14 +146,14 @@ SurfaceForces YadeSoil::advance(const SurfaceMotion& motion) {
 }
 
 void YadeSoil::save(const std::filesystem::path& file) {
-  const std::string task = nlohmann::ordered_json{{"file", std::filesystem::absolute(file).string()}}.dump();
+  const std::string task = nlohmann::ordered_json{{"file", path_code(std::filesystem::absolute(file))}}.dump();
   process_->ask({.kind = Kind::save, .text = task});
 }
 
 void YadeSoil::load(const std::filesystem::path& file) {
   const std::string task = nlohmann::ordered_json{{"recipe", recipe_json(recipe_)},
                                                   {"start", nlohmann::json::parse(start_text_)},
-                                                  {"file", std::filesystem::absolute(file).string()}}
+                                                  {"file", path_code(std::filesystem::absolute(file))}}
                                .dump();
   process_->ask({.kind = Kind::load, .text = task});
 }

@@ -40,7 +40,7 @@ BOUND_FLOOR = 3e-4  # below it errors are rounding and settling, which another c
 BOUND_FLOOR_OF = {"cell length": 0.02}  # layers of cells that divide a moment earlier
 STATUS_OF_EXIT = {2: "refused", 3: "unphysical", 4: "soil failed", -24: "too long"}  # 24: SIGXCPU
 
-MEASURING = [Path(module.__file__) for module in (answers, measure, problems, runs, theory)]
+MEASURING = [Path(str(module.__file__)) for module in (answers, measure, problems, runs, theory)]
 SOIL = sorted((PROJECT / "soil_coupling" / "yade_side").glob("*.py"))
 
 
@@ -96,7 +96,8 @@ def run_task(task: Task, programs: Path, program: str, known: set[str]) -> list[
         key = key_of(commands, folder, program)
         if key in known:
             return []
-        status, remark, values, cost, cpu_s, wall_s = "done", "", {}, None, 0.0, 0.0
+        status, remark, cost, cpu_s, wall_s = "done", "", None, 0.0, 0.0
+        values: dict = {}
         for command in commands:
             exit_status, own_cpu_s, own_wall_s = timed(command, folder)
             cpu_s, wall_s = cpu_s + own_cpu_s, wall_s + own_wall_s
@@ -165,7 +166,9 @@ def drop_strays(table: Path, grid: Sequence[Task]) -> None:
             write_rows(kept, table)
 
 
-def run_grid(tasks: Sequence[Task], programs: Path, program: str, table: Path, known_problems: Sequence[Problem]) -> None:
+def run_grid(
+    tasks: Sequence[Task], programs: Path, program: str, table: Path, known_problems: Sequence[Problem]
+) -> None:
     """Runs what the table does not hold yet."""
     known = {row.key for row in read_rows(table)}
     for number, task in enumerate(tasks, 1):
@@ -176,14 +179,14 @@ def run_grid(tasks: Sequence[Task], programs: Path, program: str, table: Path, k
         told = ", ".join(f"{r.measure} {r.error:.2e}" for r in rows if r.key == new[0].key and r.error == r.error)
         level = "" if math.isnan(task.choice.level) else f" {task.choice.level:g}"
         print(
-            f"{number}/{len(tasks)} {task.problem.name}, {task.choice.name}{level}, {task.across} across: {new[0].status}, "
-            f"{new[0].cpu_s:.2f} s; {told or new[0].remark}",
+            f"{number}/{len(tasks)} {task.problem.name}, {task.choice.name}{level}, {task.across} across: "
+            f"{new[0].status}, {new[0].cpu_s:.2f} s; {told or new[0].remark}",
             flush=True,
         )
 
 
 def part_of(text: str) -> tuple[int, int]:
-    """"1/2" as (1, 2)."""
+    """ "1/2" as (1, 2)."""
     number, _, count = text.partition("/")
     if not (number.isdigit() and count.isdigit() and 1 <= int(number) <= int(count)):
         raise argparse.ArgumentTypeError(f"'{text}' is no part; 1/2 and 2/2 are the halves")
@@ -219,12 +222,20 @@ def main() -> int:
     """0; 1 where a program is missing."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="a small grid, for continuous integration")
-    parser.add_argument("--out", type=Path, help="folder of the results; otherwise docs, with --quick runs/accuracy_quick")
+    parser.add_argument(
+        "--out", type=Path, help="folder of the results; otherwise docs, with --quick runs/accuracy_quick"
+    )
     parser.add_argument("--programs", type=Path, default=PROJECT / "build" / "release", help="folder of the programs")
-    parser.add_argument("--draw-only", action="store_true", help="runs nothing: pictures and page from the rows there are")
-    parser.add_argument("--record-bounds", action="store_true", help=f"with --quick: write {BOUNDS.relative_to(PROJECT)}")
+    parser.add_argument(
+        "--draw-only", action="store_true", help="runs nothing: pictures and page from the rows there are"
+    )
+    parser.add_argument(
+        "--record-bounds", action="store_true", help=f"with --quick: write {BOUNDS.relative_to(PROJECT)}"
+    )
     parser.add_argument("--only", nargs="*", help="names of problems; otherwise all")
-    parser.add_argument("--part", type=part_of, default=(1, 1), metavar="I/N", help="every N-th run only, from the I-th on")
+    parser.add_argument(
+        "--part", type=part_of, default=(1, 1), metavar="I/N", help="every N-th run only, from the I-th on"
+    )
     arguments = parser.parse_args()
     in_docs = not (arguments.out or arguments.quick)
     folder = PROJECT / "docs" if in_docs else arguments.out or PROJECT / "runs" / "accuracy_quick"

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """What each effect costs, in time and memory, and where it takes part: writes docs/effects.md and its picture.
 
-Three measurements: what `rootsoil check` finds in every scene of scenarios/; the main job and a 3D root with each effect
-taken out in turn (processor time of the same number of steps, pair by pair, median); the main job with and without
-[sleep], hour by hour. --quick: shorter ones, for CI, into --out only. What stands below the page's last mark is
+Three measurements: what `rootsoil check` finds in every scene of scenarios/; the main job and a 3D root with each
+effect taken out in turn (processor time of the same number of steps, pair by pair, median); the main job with and
+without [sleep], hour by hour. --quick: shorter ones, for CI, into --out only. What stands below the page's last mark is
 written by hand and kept.
 """
 
@@ -44,8 +44,6 @@ REMOVALS = (
     Removal("anisotropy", ("tissue.anisotropy",), buys="a root that keeps its width: growth goes along it"),
     Removal("growth", ("growth", "division"), buys="elongation (taken out together with division)"),
     Removal("division", ("division",), buys="cells of the measured lengths; without it they stretch for ever"),
-    Removal("inertia compensation", (), ("numerics.inertia_compensation=false",), "a tenth of the error in growth at the same step"),
-    Removal("midline damping", (), ("numerics.midline_damping_per_h=0",), "a long free root that stays straight"),
     Removal("pair resistance", ("non_affine_control",), buys="no odd-even modes; bending needs it"),
 )
 SLEEP_HOURS = (2.0, 10.0, 20.0, 30.0, 40.0, 50.0)
@@ -53,7 +51,10 @@ SLEEP_HOURS = (2.0, 10.0, 20.0, 30.0, 40.0, 50.0)
 
 def cpu_s(command: Sequence[str | Path]) -> float:
     """Processor time of a command (s). CalledProcessError: it failed."""
-    process = subprocess.Popen([str(part) for part in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [str(part) for part in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stderr is not None  # a pipe, as asked for above
     said = process.stderr.read()
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
@@ -82,7 +83,8 @@ def scene_table(program: Path) -> list[str]:
         active = {effect["name"] for effect in scene["effects"] if effect["active"]}
         marks = " | ".join("x" if effect in active else "" for effect in effects)
         lines.append(
-            f"| `{name}` | {marks} | {scene['bytes_per_cell']} | {scene['bytes_per_pair']} | {', '.join(scene['processes'])} |"
+            f"| `{name}` | {marks} | {scene['bytes_per_cell']} | {scene['bytes_per_pair']} | "
+            f"{', '.join(scene['processes'])} |"
         )
     return lines
 
@@ -96,7 +98,9 @@ def short_run_s(program: Path, scene: Path, settings: Sequence[str], steps: int,
 
     def run(until_h: float) -> float:
         subprocess.run(["rm", "-rf", str(folder)], check=True)
-        return cpu_s([program, "run", scene, "--out", folder, "--threads", "1", "--quiet", "--until", repr(until_h), *sets])
+        return cpu_s(
+            [program, "run", scene, "--out", folder, "--threads", "1", "--quiet", "--until", repr(until_h), *sets]
+        )
 
     return run(steps * step_h) - run(step_h)
 
@@ -132,7 +136,9 @@ def hourly_cost(program: Path, scene: Path, hours: Sequence[float], folder: Path
     subprocess.run(["rm", "-rf", str(folder)], check=True)
     for until in hours:
         resume = ["--resume"] if before else []
-        spent = cpu_s([program, "run", scene, "--out", folder, "--threads", "1", "--quiet", "--until", repr(until), *resume])
+        spent = cpu_s(
+            [program, "run", scene, "--out", folder, "--threads", "1", "--quiet", "--until", repr(until), *resume]
+        )
         rows.append((before, until, spent / (until - before)))
         before = until
     return rows
@@ -140,9 +146,11 @@ def hourly_cost(program: Path, scene: Path, hours: Sequence[float], folder: Path
 
 def sleep_study(program: Path, job: Path, hours: Sequence[float], work: Path, out: Path) -> list[str]:
     """Cost per hour with and without [sleep]: CSV, picture, and the text's lines."""
-    asleep = work / f"{job.stem}_sleep.toml"
-    asleep.write_text(job.read_text(encoding="utf-8").replace("[output]", "[sleep]\n\n[output]", 1), encoding="utf-8")
-    rows = {name: hourly_cost(program, scene, hours, work / name) for name, scene in (("awake", job), ("asleep", asleep))}
+    awake = work / f"{job.stem}_awake.toml"
+    awake.write_text(without_sections(job.read_text(encoding="utf-8"), ("sleep",)), encoding="utf-8")
+    rows = {
+        name: hourly_cost(program, scene, hours, work / name) for name, scene in (("awake", awake), ("asleep", job))
+    }
     with (out / "effects_sleep.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["from_h", "to_h", "awake_s_per_h", "asleep_s_per_h"])
@@ -153,12 +161,14 @@ def sleep_study(program: Path, job: Path, hours: Sequence[float], work: Path, ou
     length = {name: float(run.history()["length_mm"][-1]) for name, run in runs.items()}
     lines = ["| hours | all awake, s/h | with `[sleep]`, s/h |", "|---|---|---|"]
     lines += [f"| {a:g}-{b:g} | {w:.2f} | {s:.2f} |" for (a, b, w), (_, _, s) in zip(rows["awake"], rows["asleep"])]
-    resting = int(runs["asleep"].history()["cells_at_rest"][-1])
-    cells = int(runs["asleep"].history()["cells"][-1])
+    resting, cells, woken = (
+        int(runs["asleep"].history()[name][-1]) for name in ("cells_at_rest", "cells", "times_woken")
+    )
+    change = abs(length["asleep"] / length["awake"] - 1.0)
     lines += [
         "",
-        f"At the end {resting} of {cells} cells rest, the root has woken {int(runs['asleep'].history()['times_woken'][-1])} times, "
-        f"and its length differs by {abs(length['asleep'] / length['awake'] - 1.0):.1e} from the one that was awake all the time.",
+        f"At the end {resting} of {cells} cells rest, the root has woken {woken} times, "
+        f"and its length differs by {change:.1e} from the one that was awake all the time.",
     ]
     return lines
 
@@ -181,11 +191,11 @@ PAGE = """<!-- SPDX-License-Identifier: MIT -->
 <!-- Written by tools/effects.py. What is changed here is lost. -->
 # Effects: what a scene pays for
 
-A section in the scene = an effect; an absent section = absent from memory, loops, phases and processes. `rootsoil check SCENE`
-shows it for one scene, `rootsoil effects` lists them all. An effect that the program has and a scene does not call for
-changes no bit of its results and no time. When `[sleep]` was added: the first hour of the main job by the program before and after,
-five pairs in turn, 2.86 and 2.87 s of processor time (medians), history.csv the same to the byte. tests/cli/test_absent_effects.py looks
-for fields, phases and pair terms that nobody called for.
+A section in the scene = an effect; an absent section = absent from memory, loops, phases and processes. `rootsoil check
+SCENE` shows it for one scene, `rootsoil effects` lists them all. An effect that the program has and a scene does not
+call for changes no bit of its results and no time. When `[sleep]` was added: the first hour of the main job by the
+program before and after, five pairs in turn, 2.86 and 2.87 s of processor time (medians), history.csv the same to the
+byte. tests/cli/test_absent_effects.py looks for fields, phases and pair terms that nobody called for.
 
 ## Which scene has what
 
@@ -193,29 +203,30 @@ for fields, phases and pair terms that nobody called for.
 
 ## What each costs and buys
 
-Processor time of the first {steps} steps with the effect, against the same scene without it (share of the whole; median of
-{pairs} pairs run in turn, one thread, noise some 5 %), and the memory that goes with it.
+Processor time of the first {steps} steps with the effect, against the same scene without it (share of the whole; median
+of {pairs} pairs run in turn, one thread, noise some 5 %), and the memory that goes with it.
 
 {shares}
 
-Not in this table: the pressure differential (nothing that can be measured), obstacles (cells near the surface only), soil (the
-soil's process takes some nine tenths of a run with few cells, half of one with many: the columns `soil_dem_s` and
-`soil_exchange_s` of history.csv), probes (at outputs only).
+Not in this table: the pressure differential (nothing that can be measured), obstacles (cells near the surface only),
+soil (the soil's process takes some nine tenths of a run with few cells, half of one with many: the columns `soil_dem_s`
+and `soil_exchange_s` of history.csv), probes (at outputs only).
 
 ## Only where and when it matters: `[sleep]`
 
-Mature tissue that does not move leaves all loops: everything from the base up to two kernel reaches beyond the last cell that
-strains by more than `strain_rate_per_h` or moves (mean over ten windows, or over `mean_over_h`). The cells in between are held, as at the base. When
-their axial stress changes by more than `stress_change` of the pressure differential (thrust, bending, a neighbour that moves),
-or the differential itself does, all wake; cells in contact with an `[[obstacle]]` do not fall asleep. Those among grains do (below).
+Mature tissue that does not move leaves all loops: everything from the base up to two kernel reaches beyond the last
+cell that strains by more than `strain_rate_per_h` or moves (mean over ten windows, or over `mean_over_h`). The cells in
+between are held, as at the base. When their axial stress changes by more than `stress_change` of the pressure
+differential (thrust, bending, a neighbour that moves), or the differential itself does, all wake; cells in contact with
+an `[[obstacle]]` do not fall asleep. Those among grains do (below).
 
 ![Cost per simulated hour, with and without sleep](images/effects_sleep.png)
 
 {sleep}
 
-Without `[sleep]` the cost of an hour follows the root's length, with it the length of the part that grows. What it does to the
-results is measured above and in tests/physics/sleep_test.cpp (places of cells within 0.5 % of a cell after an hour; force on a
-plate within 2 %; same bits after a pause).
+Without `[sleep]` the cost of an hour follows the root's length, with it the length of the part that grows. What it does
+to the results is measured above and in tests/physics/sleep_test.cpp (places of cells within 0.5 % of a cell after an
+hour; force on a plate within 2 %; same bits after a pause).
 
 """
 KEPT_FROM = "<!-- From here on written by hand: tools/effects.py keeps it. -->\n"
@@ -234,25 +245,35 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="a minute: 2D only, few steps, two hours of sleep")
     parser.add_argument("--out", type=Path, help="folder (default: docs and docs/images; with --quick: runs/effects)")
-    parser.add_argument("--work", type=Path, default=Path("runs/effects_work"), help="where runs go (default: %(default)s)")
+    parser.add_argument(
+        "--work", type=Path, default=Path("runs/effects_work"), help="where runs go (default: %(default)s)"
+    )
     parser.add_argument("--program", type=Path, default=PROGRAM, help="default: build/release/rootsoil")
     options = parser.parse_args()
     quick = options.quick
     page_folder = options.out or (Path("runs/effects") if quick else PROJECT / "docs")
     pictures = page_folder / "images"
-    steps, pairs = (400, 1) if quick else (2000, 3)
+    steps, pairs = (20, 1) if quick else (50, 3)
     try:
         pictures.mkdir(parents=True, exist_ok=True)
         options.work.mkdir(parents=True, exist_ok=True)
         table = []
         for name, job in list(JOBS.items())[: 1 if quick else None]:
-            table += [f"**{name}**, `{job.stem}`", "", "| effect | time | bytes a cell | bytes a pair | what it buys |", "|---|---|---|---|---|"]
+            table += [
+                f"**{name}**, `{job.stem}`",
+                "",
+                "| effect | time | bytes a cell | bytes a pair | what it buys |",
+                "|---|---|---|---|---|",
+            ]
             table += [*shares(options.program, job, steps, pairs, options.work), ""]
         hours = (2.0, 3.0, 5.0) if quick else SLEEP_HOURS
         sleep = sleep_study(options.program, JOBS["main job (2D)"], hours, options.work, pictures)
         scenes = scene_table(options.program)
     except subprocess.CalledProcessError as error:
-        print(f"effects: '{' '.join(map(str, error.cmd))}' ended with status {error.returncode}: {error.stderr}", file=sys.stderr)
+        print(
+            f"effects: '{' '.join(map(str, error.cmd))}' ended with status {error.returncode}: {error.stderr}",
+            file=sys.stderr,
+        )
         return 1
     except (RunError, OSError, ValueError, KeyError) as error:
         print(f"effects: {error}", file=sys.stderr)

@@ -24,7 +24,7 @@ from matplotlib.lines import Line2D
 from rootsoil_tools import draw, measure
 from rootsoil_tools.runs import Run, RunError
 from rootsoil_tools.series import PROGRAM, PROJECT, Series
-from rootsoil_tools.theory import Model, model_of
+from rootsoil_tools.theory import ClosedForm
 
 PRESSURES_MPA = (1.0, 0.825, 0.75, 0.625, 0.5, 0.4)
 QUICK_FRACTION = 0.4  # of the scene's duration
@@ -35,7 +35,7 @@ class Member:
     """One run of the series and what was measured in it."""
 
     p: float  # MPa
-    model: Model
+    model: ClosedForm
     s: np.ndarray  # mm
     profiles: dict[str, measure.Profile]
     tip_speed: float  # mm/h
@@ -46,8 +46,8 @@ class Member:
 
 def measure_member(p: float, run: Run) -> Member:
     """Profiles and numbers of one run."""
-    model = model_of(run.scene, float(run.times_h[-1]))
     last = run.frame(-1)
+    model = last.closed_form
     length = float(last["distance_to_tip"].max())
     zone = model.growth_zone(length)
     edges = measure.edges_of(min(1.3 * zone, length), measure.bin_width(last, run.dimension, zone))
@@ -77,8 +77,8 @@ def draw_series(members: list[Member], out: Path) -> None:
         s = np.linspace(0.0, end, 600)
         line = {"color": blue, "linewidth": 1.3}
         theory = {"color": draw.THEORY, "linewidth": 0.6, "linestyle": (0, (4, 3)), "zorder": 3}
-        panels[0].plot(s, member.model.softening(s) / 1e3, label=f"{member.p:g}", **line)
-        panels[2].plot(s, member.model.radial_modulus(s) / 1e3, **line)
+        panels[0].plot(s, member.model.at("softening", s) / 1e3, label=f"{member.p:g}", **line)
+        panels[2].plot(s, member.model.at("radial_modulus", s) / 1e3, **line)
         panels[1].plot(s, member.model.axial_rate(s), **theory)
         for panel, name in ((panels[1], "axial_strain_rate"), (panels[3], "radius")):
             profile = member.profiles[name]
@@ -126,7 +126,7 @@ def write_csv(members: list[Member], out: Path) -> None:
             + ["axial_strain_rate_closed_form_per_h", "radius_mm"]
         )
         for m in members:
-            columns = [m.s, m.model.softening(m.s), m.model.radial_modulus(m.s)]
+            columns = [m.s, m.model.at("softening", m.s), m.model.at("radial_modulus", m.s)]
             columns += [m.profiles["axial_strain_rate"].mean, m.model.axial_rate(m.s), m.profiles["radius"].mean]
             for row in np.stack(columns, axis=1):
                 writer.writerow([f"{m.p:g}", *(f"{value:.6g}" for value in row)])

@@ -28,14 +28,10 @@ MICRO_SIGNS = {
     "latin1": "\N{MICRO SIGN}".encode("latin-1"),
     "broken": "\N{MICRO SIGN}".encode()[:1],  # half of a UTF-8 character
 }
-HEADER = (
-    "Label, pos.X (um), pos.Y (um), pos.Z (um), e1.X, e1.Y, e1.Z, e2.X, e2.Y, e2.Z, r1 (um), r2 (um), r3 (um)"
-)
+HEADER = "Label, pos.X (um), pos.Y (um), pos.Z (um), e1.X, e1.Y, e1.Z, e2.X, e2.Y, e2.Z, r1 (um), r2 (um), r3 (um)"
 
 
-def sample_capsule(
-    rng: np.random.Generator, count: int, length: float, radius: float
-) -> tuple[np.ndarray, np.ndarray]:
+def sample_capsule(rng: np.random.Generator, count: int, length: float, radius: float) -> tuple[np.ndarray, np.ndarray]:
     """`count` random points in the capsule (um) and the volume that each stands for (relative).
 
     The points' density is that of the wanted cells to the power 5/3, highest at the tip.
@@ -68,9 +64,7 @@ def nearest_centre(points: np.ndarray, centres: np.ndarray) -> np.ndarray:
     for chunk in np.array_split(order, max(len(points) // 2000, 1)):
         slab = points[chunk]
         margin = 0.05 * np.ptp(centres[:, 0])
-        near = np.flatnonzero(
-            (centres[:, 0] > slab[0, 0] - margin) & (centres[:, 0] < slab[-1, 0] + margin)
-        )
+        near = np.flatnonzero((centres[:, 0] > slab[0, 0] - margin) & (centres[:, 0] < slab[-1, 0] + margin))
         for candidates, reach in ((near, margin), (np.arange(len(centres)), np.inf)):
             if candidates.size == 0:
                 continue

@@ -7,8 +7,8 @@ in 3D the cells that the middle plane cuts. Below it the tip at the last time, w
 B-D, over the distance from the tip, means of the last hours with the closed form drawn in: axial strain rate (1/h),
 cell length (um), radius (mm). In a scene without growth: axial and radial strain against Eq. 8, and radius. Where a
 growing root meets obstacles: contact force (N, in 2D N/mm) and deflection over time, and axial strain rate.
-In a soil of grains, A is the root among them at the last time, with a line at every contact, as thick as its force; B-D are
-the soil's force on the root, the tip's speed with the one that these forces allow, and the axial strain rate.
+In a soil of grains, A is the root among them at the last time, with a line at every contact, as thick as its force;
+B-D are the soil's force on the root, the tip's speed with the one that these forces allow, and the axial strain rate.
 """
 
 from __future__ import annotations
@@ -19,12 +19,16 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib import pyplot as plt
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.colors import Colormap
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Rectangle
 
 from rootsoil_tools import draw, measure, soil
-from rootsoil_tools.runs import Frame, Run, RunError
-from rootsoil_tools.theory import Model, model_of
+from rootsoil_tools.runs import Frame, Run, RunError, read_summary
+from rootsoil_tools.theory import ClosedForm
 
 PAGE_WIDTH = 180.0  # mm of paper, as everything in capitals here
 MARGIN = 4.0
@@ -38,8 +42,18 @@ SOIL_MAX_HEIGHT = 110.0
 SPEED_OVER_H = 0.5  # the soil yields in jerks
 PROFILE_HEIGHT = 40.0
 PANEL_GAP = 16.0
+LONG_TICKS = 3.0  # more for those of a small deflection
+RIGHT_AXIS_WIDTH = 11.0  # of tick labels and label of an axis on the right
 TIMES = 6
+DEFLECTION_SEEN = 0.1  # of a cell's length: less looks like none
 DISTANCE = "distance from the tip (mm)"
+
+
+def percent(number: float) -> str:
+    """Three digits, and never a power of ten."""
+    if abs(number) < 1e-3:
+        return "below 0.001 %"
+    return f"{number:.3g} %" if number < 1000.0 else f"{number:.0f} %"
 
 
 class Stack:
@@ -64,8 +78,8 @@ class Stack:
         distance = frame["distance_to_tip"]
         if not self.run.scene.get("obstacle"):
             return np.ones_like(distance, dtype=bool)
-        model = model_of(self.run.scene, frame.time_h)
-        return distance < (model.growth_zone(float(distance.max())) if model.growth else np.inf)
+        model = frame.closed_form
+        return distance < (model.growth_zone(float(distance.max())) if model.grows else np.inf)
 
     def _arrange(self) -> None:
         """As many columns as leave the roots nearly as large on the paper as they can be."""
@@ -85,7 +99,7 @@ class Stack:
         self.row_height = max(height * self.scale, 2.5) + ROW_GAP
         self.height = self.rows * self.row_height
 
-    def draw(self, axes, colours) -> None:
+    def draw(self, axes: Axes, colours: Colormap) -> None:
         """Into axes whose unit is 1 mm of root and whose origin is the panel's upper left corner."""
         paper = 1.0 / self.scale
         width = (PAGE_WIDTH - 2.0 * MARGIN) * paper
@@ -115,13 +129,15 @@ class SoilView:
         low, high = soil.extent(frame)
         position = frame["position"][:, :2]
         half = float(frame["cell_axes"][:, 0].max()) / 2.0
-        self.low, self.high = np.minimum(low, position.min(axis=0) - half), np.maximum(high, position.max(axis=0) + half)
+        self.low, self.high = np.minimum(low, position.min(axis=0) - half), np.maximum(
+            high, position.max(axis=0) + half
+        )
         width, height = self.high - self.low
         self.scale = min((PAGE_WIDTH - 2.0 * MARGIN) / width, SOIL_MAX_HEIGHT / height)
         self.height = height * self.scale
         self.strong = soil.strong_force(frame)
 
-    def draw(self, axes, colours) -> None:
+    def draw(self, axes: Axes, colours: Colormap) -> None:
         """Into axes whose unit is 1 mm of root and whose origin is the panel's upper left corner."""
         frame, paper = self.frames[0], 1.0 / self.scale
         axes.set(xlim=(0.0, (PAGE_WIDTH - 2.0 * MARGIN) * paper), ylim=(-self.height * paper, 0.0))
@@ -154,7 +170,7 @@ class Zoom:
         self.scale = min(width_paper / size[0], ZOOM_MAX_HEIGHT / size[1])
         self.height = size[1] * self.scale
 
-    def draw(self, axes, colours) -> None:
+    def draw(self, axes: Axes, colours: Colormap) -> None:
         """Into axes that are exactly as large as the zoomed box."""
         axes.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]))
         axes.set(xticks=[], yticks=[])
@@ -163,7 +179,7 @@ class Zoom:
         draw.draw_cells(axes, self.frame, self.run.dimension, colours, chosen=self.near, edge_mm=0.06)
 
 
-def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
+def draw_growth(run: Run, model: ClosedForm, panels: list) -> list[str]:
     """Axial strain rate, cell length and radius with theory and data; returns lines to print."""
     last = run.frame(-1)
     lengths = [float(run.frame(index)["distance_to_tip"].max()) for index in run.window(measure.WINDOW_H)]
@@ -173,46 +189,58 @@ def draw_growth(run: Run, model: Model, panels: list) -> list[str]:
     edges = measure.edges_of(end, measure.bin_width(last, run.dimension, min(zone, end)))
     profiles = measure.growth_profiles(run, edges)
     s = np.linspace(0.0, end, 600)
-    said = []
+    said, steady_in = [], []
 
     draw.draw_profile(panels[0], profiles["axial_strain_rate"])
-    panels[0].plot(s, model.axial_rate(s), **draw.THEORY_LINE)
+    (closed_form,) = panels[0].plot(s, model.axial_rate(s), **draw.THEORY_LINE)
     panels[0].set_ylabel("axial strain rate (1/h)")
     rate = profiles["axial_strain_rate"]
     peak = model.axial_rate(s).max()
     said.append(f"peak axial strain rate {np.nanmax(rate.mean):.4g} /h (closed form {peak:.4g} /h)")
     tip_speed = np.mean([model.tip_speed(at) for at in lengths])
-    said.append(f"tip speed {measure.tip_speed(run):.4g} mm/h (closed form {tip_speed:.4g} mm/h)")
+    measured_speed = measure.tip_speed(run)
+    if np.isfinite(measured_speed):
+        said.append(f"tip speed {measured_speed:.4g} mm/h (closed form {tip_speed:.4g} mm/h)")
 
     draw.draw_profile(panels[1], profiles["cell_length"])
     panels[1].set_ylabel("cell length (µm)")
+    if "cell_length" in model.columns:
+        # of tissue that has come from where cells divide, and has divided once, since the start
+        hours = float(run.times_h[-1])
+        renewed = (s <= model.carried_to(0.25 * zone, hours, length)) & (model.stretch(s, hours, length) > 2.0)
+        if np.count_nonzero(renewed) > 1:
+            panels[1].plot(s[renewed], 1e3 * model.at("cell_length", s[renewed]), **draw.THEORY_LINE)
+            steady_in.append("C")
     if "arabidopsis" in run.name.lower():
-        distance, measured, _ = measure.cell_length_data()
+        distance, measured, source = measure.cell_length_data()
         shown = distance <= end
-        panels[1].plot(distance[shown], measured[shown], "o", color=draw.DATA, markersize=2.6, markeredgewidth=0)
+        dots = {"color": draw.DATA, "markersize": 2.6, "markeredgewidth": 0, "label": source}
+        panels[1].plot(distance[shown], measured[shown], "o", **dots)
         r2 = measure.cell_length_r2(run)
-        panels[1].set_title(f"$R^2$ = {r2:.3f} (first 0.7 mm)", loc="right")
-        said.append(f"cell length, first 0.7 mm: R^2 = {r2:.4f}")
+        if np.isfinite(r2):
+            panels[1].set_title(f"$R^2$ = {r2:.3f} (first 0.7 mm)", loc="right")
+            said.append(f"cell length, first 0.7 mm: R^2 = {r2:.4f}")
 
     draw.draw_profile(panels[2], profiles["radius"])
     start = min(int(np.searchsorted(edges, 0.25 * zone)), len(edges) - 2)
     s_start, r_start = profiles["radius"].s_mm[start], profiles["radius"].mean[start]
-    # tissue that has passed the dot since the start; what lies further back began beyond it
     steady = s[(s >= s_start) & (s <= model.carried_to(s_start, float(run.times_h[-1]), length))]
-    if steady.size and zone < length:  # tissue that never stops growing has no steady state
+    if steady.size > 1 and zone < length:  # tissue that never stops growing has no steady state
         panels[2].plot(steady, model.radius(steady, s_start, r_start), **draw.THEORY_LINE)
-        panels[2].plot(s_start, r_start, "o", color=draw.THEORY, markersize=2.6)
+        steady_in.append("D")
+    closed_form.set_label("closed form" + (f" ({', '.join(steady_in)}: steady growth)" if steady_in else ""))
     panels[2].set_ylabel("radius (mm)")
     mature = measure.mature_radius(model, run)
     if np.isfinite(mature):
         drift = 1e3 * measure.radius_drift(model, run)
-        said.append(f"mature radius {mature:.4g} mm, changing by {drift:.2f} % in 10 h")
+        changing = f", changing by {drift:.2f} % in 10 h" if np.isfinite(drift) else ""
+        said.append(f"mature radius {mature:.4g} mm{changing}")
     for panel in panels:
         panel.set_xlim(0.0, end)
     return said
 
 
-def draw_contact(run: Run, model: Model, panels: list) -> list[str]:
+def draw_contact(run: Run, model: ClosedForm, panels: list) -> list[str]:
     """Contact force and deflection over time, axial strain rate with theory; returns lines to print."""
     history = run.history()
     time, force = history["time_h"], history["contact_force_N"]
@@ -220,7 +248,7 @@ def draw_contact(run: Run, model: Model, panels: list) -> list[str]:
     # over decades: what it takes to deflect the root is far below what would arrest it
     arresting = measure.arresting_force(model, run)
     panels[0].semilogy(time, np.maximum(force, 1e-6 * arresting), color=draw.SIMULATION, linewidth=1.0)
-    panels[0].set_ylim(1e-4 * arresting, 2.0 * arresting)
+    panels[0].set_ylim(1e-4 * arresting, 2.0 * max(arresting, force.max()))
     panels[0].axhline(arresting, **draw.THEORY_LINE)
     panels[0].text(0.98 * time[-1], 0.9 * arresting, "arrests the root", ha="right", va="top", size=7)
     panels[0].set_ylabel(f"contact force ({unit})")
@@ -228,6 +256,9 @@ def draw_contact(run: Run, model: Model, panels: list) -> list[str]:
     lateral = np.hypot(*(history[f"tip_{axis}_mm"] - history[f"tip_{axis}_mm"][0] for axis in "yz"))
     angle = np.degrees([measure.tip_angle(run.frame(index), run.dimension) for index in range(len(run.times_h))])
     panels[1].plot(time, lateral, color=draw.SIMULATION, linewidth=1.3)
+    cell = float(np.median(run.frame(0)["cell_axes"][:, 0]))
+    panels[1].set_ylim(0.0, 1.05 * max(float(lateral.max()), DEFLECTION_SEEN * cell))
+    panels[1].locator_params(axis="y", nbins=6)
     panels[1].set_ylabel("deflection of the tip (mm)", color=draw.SIMULATION)
     twin = panels[1].twinx()
     twin.plot(run.times_h, angle, color=draw.DATA, linewidth=1.3)
@@ -240,7 +271,7 @@ def draw_contact(run: Run, model: Model, panels: list) -> list[str]:
     edges = measure.edges_of(min(1.2 * zone, length), measure.bin_width(run.frame(-1), run.dimension, zone))
     s = np.linspace(0.0, edges[-1], 600)
     draw.draw_profile(panels[2], measure.growth_profiles(run, edges)["axial_strain_rate"])
-    panels[2].plot(s, model.axial_rate(s), **draw.THEORY_LINE)
+    panels[2].plot(s, model.axial_rate(s), **draw.THEORY_LINE, label="closed form")
     panels[2].set_ylabel("axial strain rate (1/h)")
     for panel, end, label in zip(panels, (time[-1], time[-1], s[-1]), ("time (h)", "time (h)", DISTANCE)):
         panel.set_xlim(0.0, end)
@@ -254,25 +285,30 @@ def draw_contact(run: Run, model: Model, panels: list) -> list[str]:
     ]
 
 
-def draw_soil(run: Run, model: Model, panels: list) -> list[str]:
+def draw_soil(run: Run, model: ClosedForm, panels: list) -> list[str]:
     """The soil's force on the root, the tip's speed with what these forces allow, axial strain rate; returns lines."""
     history = run.history()
     time, unit = history["time_h"], "N" if run.dimension == 3 else "N/mm"
     arresting = measure.arresting_force(model, run)
-    for name, colour, label in (("axial", draw.DATA, "whole root"), ("tip", draw.SIMULATION, "tip")):
-        panels[0].plot(time, history[f"soil_{name}_force_N"], color=colour, linewidth=1.0, label=label)
+    whole, tip = (
+        panels[0].plot(time, history[f"soil_{name}_force_N"], color=colour, linewidth=1.0)[0]
+        for name, colour in (("axial", draw.DATA), ("tip", draw.SIMULATION))
+    )
     panels[0].axhline(arresting, **draw.THEORY_LINE)
     panels[0].text(time[-1], 1.02 * arresting, "arrests the root", ha="right", va="bottom", size=7)
     panels[0].set_ylim(0.0, 1.5 * max(arresting, history["soil_axial_force_N"].max()))
     panels[0].set_ylabel(f"axial force of the soil ({unit})")
-    panels[0].legend(frameon=False, loc="upper left", handlelength=1.4, borderpad=0.0)  # above the arresting force
+    names = {"handles": [whole, tip], "labels": ["whole root", "tip"]}
+    panels[0].legend(**names, frameon=False, loc="upper left", handlelength=1.4, borderpad=0.0)  # above that force
 
-    over = max(SPEED_OVER_H, 2.0 * float(np.median(np.diff(time))))  # at least three rows
+    over = (
+        max(SPEED_OVER_H, 2.0 * float(np.median(np.diff(time)))) if len(time) > 1 else SPEED_OVER_H
+    )  # at least three rows
     speed = measure.running_slope(time, history["length_mm"], over)
     allowed = measure.running_mean(time, history["soil_expected_tip_speed_mm_h"], over)
     free = float(np.mean([model.tip_speed(length) for length in history["length_mm"]]))
     panels[1].plot(time, speed, color=draw.SIMULATION, linewidth=1.0)
-    panels[1].plot(time, allowed, **draw.THEORY_LINE)
+    panels[1].plot(time, allowed, **draw.THEORY_LINE, label="closed form with these forces")
     panels[1].set_ylabel("speed of the tip (mm/h)")
     panels[1].set_ylim(0.0, 1.2 * max(free, speed.max()))
     panels[1].axhline(free, color=draw.THEORY, linewidth=0.6, linestyle=":")
@@ -283,12 +319,12 @@ def draw_soil(run: Run, model: Model, panels: list) -> list[str]:
     edges = measure.edges_of(min(1.2 * zone, length), measure.bin_width(run.frame(-1), run.dimension, zone))
     s = np.linspace(0.0, edges[-1], 600)
     draw.draw_profile(panels[2], measure.growth_profiles(run, edges)["axial_strain_rate"])
-    panels[2].plot(s, model.axial_rate(s), color=draw.THEORY, linewidth=0.6, linestyle=":")
+    panels[2].plot(s, model.axial_rate(s), color=draw.THEORY, linewidth=0.6, linestyle=":", label="without soil")
     panels[2].set_ylabel("axial strain rate (1/h)")
     for panel, end, label in zip(panels, (time[-1], time[-1], s[-1]), ("time (h)", "time (h)", DISTANCE)):
         panel.set_xlim(0.0, end)
         panel.set_xlabel(label)
-    late = time > 0.5 * time[-1]
+    late = time >= 0.5 * time[-1]
     return [
         f"second half of the run: tip force {history['soil_tip_force_N'][late].mean():.3g} {unit}, axial force "
         f"{history['soil_axial_force_N'][late].mean():.3g} {unit} (arresting force {arresting:.3g} {unit})",
@@ -297,29 +333,33 @@ def draw_soil(run: Run, model: Model, panels: list) -> list[str]:
     ]
 
 
-def draw_strain(run: Run, model: Model, panels: list) -> list[str]:
-    """Axial and radial strain against Eq. 8, and radius; returns lines to print."""
+def draw_strain(run: Run, model: ClosedForm, panels: list) -> list[str]:
+    """Axial and radial strain (logarithmic) against Eq. 8, and radius; returns lines to print."""
     first, last = run.frame(0), run.frame(-1)
     length = float(first["distance_to_tip"].max())
     edges = measure.edges_of(length, 0.1 if length > 0.5 else length / 5.0)
     middle = (edges[1:] + edges[:-1]) / 2.0
     s = np.linspace(0.0, length, 400)
-    strains = measure.strain_profiles(first, last, run.dimension, edges)
-    theories = (lambda at: np.full_like(at, model.axial_strain()), model.radial_strain)
+    strains = [np.log1p(e) for e in measure.strain_profiles(first, last, run.dimension, edges)]
+    duration_h = float(run.scene["scene"]["duration_h"])
+    settled = last.time_h >= duration_h * (1.0 - 1e-6)  # the default duration is long enough for that
+    reached = f"{last.time_h:.3g} of {duration_h:.3g} h"
     said = []
-    for panel, kind, strain, theory in zip(panels, ("axial", "radial"), strains, theories):
-        panel.plot(middle, 1e3 * strain, "o-", color=draw.SIMULATION, linewidth=1.0, markersize=2.6)
-        panel.plot(s, 1e3 * theory(s), **draw.THEORY_LINE)
+    for panel, kind, strain in zip(panels, ("axial", "radial"), strains):
+        exact = model.at(f"{kind}_strain", s)
+        panel.plot(middle, 1e3 * strain, "o-", color=draw.SIMULATION, linewidth=1.0, markersize=2.6, label="simulation")
+        panel.plot(s, 1e3 * exact, **draw.THEORY_LINE, label="Eq. 8")
         panel.set_ylabel(f"{kind} strain (10$^{{-3}}$)")
-        top = 1.25e3 * max(np.nanmax(np.abs(strain)), np.abs(theory(s)).max())
-        panel.set_ylim(min(0.0, 1.25e3 * min(np.nanmin(strain), theory(s).min())), top)
+        top = 1.25e3 * max(np.nanmax(np.abs(strain)), np.abs(exact).max())
+        panel.set_ylim(min(0.0, 1.25e3 * min(np.nanmin(strain), exact.min())), top)
         inside = (middle > 0.1) & (middle < 1.5) & np.isfinite(strain)
         if inside.any():
-            error = 100.0 * np.abs(strain[inside] / theory(middle[inside]) - 1.0)
-            panel.set_title(f"off Eq. 8: {error.mean():.2f} % (most {error.max():.2f} %)", loc="right")
-            said.append(
-                f"{kind} strain, 0.1 mm < s < 1.5 mm: {error.mean():.3f} % off Eq. 8 (most {error.max():.3f} %)"
-            )
+            error = 100.0 * np.abs(strain[inside] / model.at(f"{kind}_strain", middle[inside]) - 1.0)
+            mean, most = percent(error.mean()), percent(error.max())
+            off = f"off Eq. 8 by {most}" if settled else f"not settled at {reached}: off {mean}"
+            panel.set_title(off, loc="right")
+            waits = "" if settled else f"; it has not settled: {reached}"
+            said.append(f"{kind} strain, 0.1 mm < s < 1.5 mm: {mean} off Eq. 8 (most {most}){waits}")
     fine = measure.edges_of(length, edges[1])
     panels[2].plot(middle, measure.radii(last, run.dimension, fine), "-", color=draw.SIMULATION, linewidth=1.3)
     panels[2].set_ylabel("radius (mm)")
@@ -329,34 +369,33 @@ def draw_strain(run: Run, model: Model, panels: list) -> list[str]:
     return said
 
 
-def legend(figure, bottom: float, run: Run, growing: bool, strong_force: float | None) -> None:
-    """One line above the panels that says what is drawn how; in a soil with the force of the thickest lines."""
-    if strong_force is not None:
-        times, unit = run.times_h[run.window(measure.WINDOW_H)], "N" if run.dimension == 3 else "N/mm"
+def simulated_when(run: Run, kind: str) -> str:
+    """What the blue line is, in words for the legend."""
+    times = run.times_h[run.window(measure.WINDOW_H)]
+    period = f"mean of {times[0]:.3g}–{times[-1]:.3g} h" if len(times) > 1 else f"{times[-1]:.3g} h"
+    when = {
+        "strain": f", {run.times_h[-1]:.3g} h",
+        "growth": f", {period}",
+        "contact": f" (D: {period})",
+        "soil": f" (D: {period})",
+    }
+    return f"simulation{when[kind]}"
+
+
+def legend(
+    figure: Figure, bottom: float, panels: list[Axes], simulation: str, chains: tuple[float, str] | None
+) -> None:
+    """One line above the panels, of what is labelled in them; in a soil with the force (and its unit) of the thickest
+    lines in A."""
+    named: dict[str, Artist] = {}
+    for panel in panels:
+        for handle, name in zip(*panel.get_legend_handles_labels()):
+            named.setdefault(name, handle)
+    entries = [(handle, simulation if name == "simulation" else name) for name, handle in named.items()]
+    if chains:
         width = soil.THICKEST_MM * soil.POINTS_PER_MM
-        entries = [
-            (Line2D([], [], color=soil.CHAIN, linewidth=width, solid_capstyle="butt"), f"{strong_force:g} {unit}"),
-            (Line2D([], [], color=draw.SIMULATION, linewidth=1.3), f"simulation (D: {times[0]:.3g}–{times[-1]:.3g} h)"),
-            (Line2D([], [], **draw.THEORY_LINE), "closed form with these forces"),
-            (Line2D([], [], color=draw.THEORY, linewidth=0.6, linestyle=":"), "without soil"),
-        ]
-    elif growing:
-        times = run.times_h[run.window(measure.WINDOW_H)]
-        closed_form = "closed form" + ("" if run.scene.get("obstacle") else " (radius: steady, from the dot)")
-        period = f"{times[0]:.3g}–{times[-1]:.3g} h" if len(times) > 1 else f"{times[-1]:.3g} h"
-        entries = [
-            (Line2D([], [], color=draw.SIMULATION, linewidth=1.3), f"simulation, mean of {period}"),
-            (Patch(facecolor=draw.SIMULATION, alpha=0.22), "16–84 %"),
-            (Line2D([], [], **draw.THEORY_LINE), closed_form),
-        ]
-        if "arabidopsis" in run.name.lower():
-            source = measure.cell_length_data()[2]
-            entries.append((Line2D([], [], marker="o", color=draw.DATA, markersize=3, linestyle="", mew=0), source))
-    else:
-        entries = [
-            (Line2D([], [], marker="o", color=draw.SIMULATION, markersize=3), f"simulation, {run.times_h[-1]:.3g} h"),
-            (Line2D([], [], **draw.THEORY_LINE), "Eq. 8"),
-        ]
+        line = Line2D([], [], color=soil.CHAIN, linewidth=width, solid_capstyle="butt")
+        entries.insert(0, (line, f"{chains[0]:g} {chains[1]}"))
     paper = figure.get_size_inches() * 25.4
     figure.legend(
         *zip(*entries),
@@ -370,7 +409,7 @@ def legend(figure, bottom: float, run: Run, growing: bool, strong_force: float |
     )
 
 
-def division_bar(figure, colours, top: float) -> None:
+def division_bar(figure: Figure, colours: Colormap, top: float) -> None:
     """The colours of the numbers of divisions, right of the header."""
     count = colours.N
     box = min(6.0, 60.0 / count)
@@ -383,20 +422,33 @@ def division_bar(figure, colours, top: float) -> None:
     axes.text(-0.02 * count - 0.5, 0.0, "divisions ", ha="right", va="center")
 
 
+def beyond_limits(run: Run) -> str:
+    """Which measures of the run's accuracy passed their limits, by how much and when, in the digits of run.log; empty:
+    none."""
+    measures = read_summary(run.folder).get("stated_accuracy", {})
+    return "; ".join(
+        f"{name.replace('_', ' ')} {m['worst']:.3g} at {m['at_h']:.4g} h (limit {m['limit']:.3g})"
+        for name, m in measures.items()
+        if m["rows_beyond"] > 0
+    )
+
+
 def draw_overview(run: Run, out: Path) -> list[str]:
     """Draws the figure; returns lines worth printing."""
     draw.use_style()
-    model = model_of(run.scene, float(run.times_h[-1]))
-    growing = model.growth is not None
     last = run.frame(-1)
+    model = last.closed_form
+    growing = model.grows
     in_soil = growing and soil.has_grains(last)
-    stack = SoilView(run, last) if in_soil else Stack(run)
+    soil_view = SoilView(run, last) if in_soil else None
+    stack: Stack | SoilView = soil_view or Stack(run)
     cell_paper = float(np.median(last["cell_axes"][:, 1])) * stack.scale
     contact = growing and not in_soil and bool(np.any(run.history().get("contact_force_N", np.zeros(1)) > 0.0))
     zoom = Zoom(run, last) if cell_paper < 0.8 and not contact and not in_soil else None
     colours = draw.division_colours(int(max(frame["generation"].max() for frame in stack.frames)))
 
-    below = 11.0  # tick labels and axis label
+    outside = beyond_limits(run)
+    below = 11.0 + (3.5 if outside else 0.0)  # tick labels and axis label, a line of warning
     above = 13.0  # titles and legend
     zoom_height = zoom.height + 8.0 if zoom else 0.0  # with a gap above, and a line for its scale bar below
     height = below + PROFILE_HEIGHT + above + zoom_height + stack.height + HEADER
@@ -408,11 +460,15 @@ def draw_overview(run: Run, out: Path) -> list[str]:
     title = run.name if run.dimension == 2 else f"{run.name} (middle plane)"
     figure.text((MARGIN + 6.0) / PAGE_WIDTH, letter_bottom / height, title, size=8.5, va="bottom")
     draw.scale_bar(figure, 0.55 * PAGE_WIDTH, height - 4.5, stack.scale)
+    if outside:
+        figure.text(
+            0.5, 0.4 / height, f"outside its stated accuracy: {outside}", color=draw.WARNING, ha="center", va="bottom"
+        )
     if colours.N > 1:
         division_bar(figure, colours, height - 2.5)
     stack_axes = draw.place(figure, MARGIN, top - stack.height, PAGE_WIDTH - 2.0 * MARGIN, stack.height)
     stack.draw(stack_axes, colours)
-    if zoom:
+    if zoom and isinstance(stack, Stack):  # among grains there is no zoom
         width = (zoom.high - zoom.low)[0] * zoom.scale
         bottom = top - stack.height - zoom.height - 2.0
         zoom.draw(draw.place(figure, MARGIN + LABEL_WIDTH, bottom, width, zoom.height), colours)
@@ -424,20 +480,24 @@ def draw_overview(run: Run, out: Path) -> list[str]:
             Rectangle(corner, *(zoom.high - zoom.low), fill=False, edgecolor="#606060", linewidth=0.5, clip_on=False)
         )
 
-    gap = PANEL_GAP + (6.0 if contact else 0.0)  # room for an axis on the right
-    width = (PAGE_WIDTH - 2.0 * MARGIN - TICKS_WIDTH - 2.0 * gap) / 3.0
-    lefts = [MARGIN + TICKS_WIDTH + number * (width + gap) for number in range(3)]
+    gaps = np.array([0.0, PANEL_GAP, PANEL_GAP]) + ([0.0, LONG_TICKS, RIGHT_AXIS_WIDTH] if contact else 0.0)
+    width = (PAGE_WIDTH - 2.0 * MARGIN - TICKS_WIDTH - gaps.sum()) / 3.0
+    lefts = MARGIN + TICKS_WIDTH + np.arange(3) * width + np.cumsum(gaps)
     panels = [draw.place(figure, left, below, width, PROFILE_HEIGHT) for left in lefts]
     for panel in panels:
         panel.set_xlabel(DISTANCE)
-    draw_panels = draw_soil if in_soil else draw_contact if contact else draw_growth if growing else draw_strain
+    kind = "soil" if in_soil else "contact" if contact else "growth" if growing else "strain"
+    draw_panels = {"soil": draw_soil, "contact": draw_contact, "growth": draw_growth, "strain": draw_strain}[kind]
     said = draw_panels(run, model, panels)
     for left, panel, name in zip(lefts, panels, "BCD"):
         low, high = panel.get_ylim()
         if panel.get_yscale() == "linear":
             panel.set_ylim(bottom=low if low < -0.1 * high else 0.0)
         draw.letter(figure, left - TICKS_WIDTH, below + PROFILE_HEIGHT + 1.0, name)
-    legend(figure, below + PROFILE_HEIGHT + 7.0, run, growing, stack.strong if in_soil else None)
+    if outside:
+        said.append(f"outside its stated accuracy: {outside}")
+    chains = (soil_view.strong, "N" if run.dimension == 3 else "N/mm") if soil_view else None
+    legend(figure, below + PROFILE_HEIGHT + 7.0, panels, simulated_when(run, kind), chains)
 
     temporary = out.with_name(f".{out.name}.part{out.suffix}")
     figure.savefig(temporary, dpi=draw.DOTS_PER_INCH)

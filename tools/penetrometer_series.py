@@ -59,7 +59,11 @@ class Choice:
     @property
     def settings(self) -> list[str]:
         """key=value for --set."""
-        settings = [f"soil.inertial_number_max={self.inertial_number:g}", f"soil.seed={self.seed}", "penetrometer.seeds=1"]
+        settings = [
+            f"soil.inertial_number_max={self.inertial_number:g}",
+            f"soil.seed={self.seed}",
+            "penetrometer.seeds=1",
+        ]
         if self.pressure_MPa is not None:
             settings.append(f"soil.confining_pressure_MPa={self.pressure_MPa:g}")
         if self.friction_deg is not None:
@@ -197,9 +201,15 @@ def table(runs: list[Measured]) -> str:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
-        "soil", type=Path, nargs="?", default=PROJECT / "scenarios" / "soils" / "sandy_2d.toml", help="default: sandy_2d"
+        "soil",
+        type=Path,
+        nargs="?",
+        default=PROJECT / "scenarios" / "soils" / "sandy_2d.toml",
+        help="default: sandy_2d",
     )
-    parser.add_argument("--out", type=Path, default=Path("runs/penetrometer_series"), help="folder (default: %(default)s)")
+    parser.add_argument(
+        "--out", type=Path, default=Path("runs/penetrometer_series"), help="folder (default: %(default)s)"
+    )
     parser.add_argument("--inertial-numbers", type=float, nargs="+", default=INERTIAL_NUMBERS, metavar="I")
     parser.add_argument("--pressures", type=float, nargs="+", default=[None], metavar="MPa", help="default: the file's")
     parser.add_argument("--friction", type=float, nargs="+", default=[None], metavar="DEG", help="default: the file's")
@@ -224,7 +234,10 @@ def main() -> int:
         print("penetrometer_series: interrupted; the same command goes on with what is missing", file=sys.stderr)
         return 130
     except subprocess.CalledProcessError as error:
-        print(f"penetrometer_series: '{' '.join(map(str, error.cmd))}' ended with status {error.returncode}", file=sys.stderr)
+        print(
+            f"penetrometer_series: '{' '.join(map(str, error.cmd))}' ended with status {error.returncode}",
+            file=sys.stderr,
+        )
         return 1
     except (RunError, OSError, ValueError, KeyError) as error:
         print(f"penetrometer_series: {error}", file=sys.stderr)

@@ -9,7 +9,7 @@ if [[ "${1:-}" == "-h" || "${1:-}" == "--help" ]]; then
   cat <<HELP
 usage: tools/run.sh [SCENE] [ARGS]
 
-Installs what is missing, builds, and runs SCENE.
+Installs what a run needs and lacks, builds the program (no tests), and runs SCENE.
   SCENE  a scene file, or the bare name of one in scenarios/ (default: case2_arabidopsis)
   ARGS   go to 'rootsoil run': --out DIR, --threads N, --resume, --set key.path=value,
          --accuracy fast|balanced|reference, --until H, --quiet
@@ -31,5 +31,5 @@ fi
 if [[ -f "$scene" ]] && grep --quiet '^ *\[soil\]' "$scene"; then
   "$root/tools/setup.sh" --soil
 fi
-"$root/tools/build.sh"
+"$root/tools/build.sh" rootsoil
 exec "$root/build/release/rootsoil" run "$scene" "$@"

@@ -1,25 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs what rootsoil needs and this machine lacks, from Debian's own packages (Debian 12). tools/setup.sh [--soil]
+# Installs what rootsoil needs and this machine lacks, from Debian's own packages (Debian 12):
+# tools/setup.sh [--test] [--soil] [--dev]
 # Says what and why. Does nothing, in a blink, when all is there.
 set -euo pipefail
 
-with_soil=false
-case "${1:-}" in
-  -h | --help)
-    echo "usage: tools/setup.sh [--soil]    install the Debian packages that rootsoil needs and that are missing"
-    echo "  --soil  also what only scenes with [soil], the penetrometer and their tests need: YADE"
-    exit 0
-    ;;
-  --soil) with_soil=true ;;
-  "") ;;
-  *)
-    echo "setup: unknown argument '$1' (allowed: --soil)" >&2
-    exit 2
-    ;;
-esac
-
-# The one list: package, then what it is for.
+# Package, then what it is for. What a run needs, from compiler to picture:
 packages="
 g++                  the C++20 compiler, with OpenMP (parallel loops)
 cmake                configures the build
@@ -31,20 +17,50 @@ libcli11-dev         the command line
 libfmt-dev           formats messages
 libspdlog-dev        run.log
 nlohmann-json3-dev   summary.json
-libgtest-dev         tests
-libgmock-dev         tests: matchers
-libbenchmark-dev     benchmarks
 python3-h5py         tools: read run.h5
 python3-numpy        tools: arithmetic
 python3-matplotlib   tools: overview.png and the other figures
 python3-tomli-w      tools: write scene files (TOML)
-python3-pytest       tools: tests
+"
+test_packages="
+libgtest-dev         tests of the program
+libgmock-dev         tests of the program: matchers
+libbenchmark-dev     benchmarks
+python3-pytest       tests of the tools and of the command line
 "
 # A scene without [soil] starts no process and needs none of this.
 soil_packages="
 yade                 moves the grains of the soil, in a process of its own
 "
-if $with_soil; then packages+=${soil_packages#$'\n'}; fi
+dev_packages="
+clang-format         style of C++
+clang-tidy           faults in C++
+cppcheck             more faults in C++
+shellcheck           faults in shell scripts
+black                style of Python
+flake8               faults in Python
+mypy                 types in Python
+codespell            spelling
+pre-commit           all this before a commit
+"
+for argument in "$@"; do
+  case "$argument" in
+    -h | --help)
+      echo "usage: tools/setup.sh [--test] [--soil] [--dev]    install the Debian packages that a run needs and that are missing"
+      echo "  --test  also what the tests and benchmarks need"
+      echo "  --soil  also what only scenes with [soil], the penetrometer and their tests need: YADE"
+      echo "  --dev   also what checks style, spelling and types"
+      exit 0
+      ;;
+    --test) packages+=${test_packages#$'\n'} ;;
+    --soil) packages+=${soil_packages#$'\n'} ;;
+    --dev) packages+=${dev_packages#$'\n'} ;;
+    *)
+      echo "setup: unknown argument '$argument' (allowed: --test, --soil, --dev)" >&2
+      exit 2
+      ;;
+  esac
+done
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   echo "setup: this is not a Debian system (no dpkg or apt-get). Install by other means:" >&2

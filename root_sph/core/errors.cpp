@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <utility>
 
 namespace rootsoil {
@@ -22,6 +23,31 @@ std::string format_input_problem(const InputProblem& p) {
 
 InputError::InputError(InputProblem problem)
     : Error(ExitStatus::bad_input, format_input_problem(problem)), problem_(std::move(problem)) {}
+
+FileError::FileError(const std::string& problem, const std::string& remedy)
+    : Error(ExitStatus::file_trouble, remedy.empty() ? problem : fmt::format("{}\n  to do:   {}", problem, remedy)),
+      problem_(problem),
+      remedy_(remedy) {}
+
+std::string file_remedy(int error_number) {
+  switch (error_number) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      return "make room on the disk, or raise the limit; a run then goes on by --resume";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "check the permissions of the file and its folder, or take another place";
+    case ENOENT:
+    case ENOTDIR:
+    case EISDIR:
+    case EEXIST:
+      return "check the path: every part of it but the last must be a folder that is there";
+    default:
+      return "check the path and the disk; a run then goes on by --resume";
+  }
+}
 
 void assertion_failed(const char* expression, const char* file, int line) {
   throw std::logic_error(fmt::format("internal error: {} is false ({}:{}); please report it", expression, file, line));

@@ -59,8 +59,17 @@ class SoilError : public Error {
 
 class FileError : public Error {
  public:
-  explicit FileError(const std::string& message) : Error(ExitStatus::file_trouble, message) {}
+  /// \param problem without full stop
+  explicit FileError(const std::string& problem, const std::string& remedy = {});
+  const std::string& problem() const { return problem_; }  ///< for whoever knows more, and says it all anew
+  const std::string& remedy() const { return remedy_; }
+
+ private:
+  std::string problem_, remedy_;
 };
+
+/// What to do where the system refused to write or read a file, by its error number.
+std::string file_remedy(int error_number);
 
 /// "file:line: key: what (given: ..., allowed: ...). remedy"
 std::string format_input_problem(const InputProblem& problem);

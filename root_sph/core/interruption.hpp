@@ -2,7 +2,12 @@
 // Ctrl-C and kill ask a long task to stop at the next good place.
 #pragma once
 
+#include <unistd.h>
+
 #include <csignal>
+#include <string_view>
+
+#include "root_sph/core/errors.hpp"
 
 namespace rootsoil {
 
@@ -27,5 +32,17 @@ class Interruption {
   void (*old_interrupt_)(int);
   void (*old_terminate_)(int);
 };
+
+/// While there is nothing to keep, SIGINT and SIGTERM end the program at once, with the exit status of an interrupted
+/// run.
+inline void end_at_once_when_interrupted() {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    std::signal(signal, [](int) {
+      constexpr std::string_view text = "rootsoil: interrupted before anything was done\n";
+      static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));  // a handler may call this, and little else
+      _exit(static_cast<int>(ExitStatus::interrupted));
+    });
+  }
+}
 
 }  // namespace rootsoil

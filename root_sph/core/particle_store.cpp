@@ -52,15 +52,15 @@ ParticleStore<Dim>::ParticleStore()
       frame(declare<Mat<Dim>>({"frame", "1", "material axes as columns, first along the root"},
                               on_division::copy<Dim, Mat<Dim>>)),
       shape(declare<Mat<Dim>>({"shape", "1/mm^2", "shape matrix Q, eigenvalues 4/length^2"}, halve_longest_axis<Dim>)),
-      distance_to_tip(declare<double>({"distance_to_tip", "mm", "distance from the tip along the root"},
-                                      shift_along_root<Dim>)),
+      distance_to_tip(
+          declare<double>({"distance_to_tip", "mm", "distance from the tip along the root"}, shift_along_root<Dim>)),
       generation(declare<std::int64_t>({"generation", "1", "divisions since the start"}, next_generation<Dim>)),
       cell_id(declare<std::int64_t>({"cell_id", "1", "unique number of the cell"}, new_ids<Dim>)),
       // parent_id is set by divide(), which alone knows the mother's id
       parent_id(declare<std::int64_t>({"parent_id", "1", "cell_id of the mother, -1 at the start"},
                                       on_division::copy<Dim, std::int64_t>)),
-      clamped(declare<std::int64_t>({"clamped", "1", "1 where the base is held, 2 asleep"},
-                                    on_division::copy<Dim, std::int64_t>)) {}
+      clamped(
+          declare<std::int64_t>({"clamped", "1", "1 where the cell is held"}, on_division::copy<Dim, std::int64_t>)) {}
 
 template <int Dim>
 FieldBase<Dim>* ParticleStore<Dim>::find(const std::string& name) const {

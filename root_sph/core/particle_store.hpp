@@ -7,11 +7,8 @@
 // field. An effect that is absent from the scene declares nothing.
 //
 // Cells at rest lie at the end of every column, beyond size(): whoever loops over the cells passes them by
-// (effects/sleep.hpp).
+// (effects/sleep/sleep.hpp).
 #pragma once
-
-#include "root_sph/core/errors.hpp"
-#include "root_sph/core/types.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -22,6 +19,9 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "root_sph/core/errors.hpp"
+#include "root_sph/core/types.hpp"
 
 namespace rootsoil {
 
@@ -56,11 +56,6 @@ void halve(T& first, T& second, const Division<Dim>&) {
 template <int Dim, class T>
 void recomputed(T&, T&, const Division<Dim>&) {}
 }  // namespace on_division
-
-/// Values of the column `clamped`.
-namespace hold {
-inline constexpr std::int64_t none = 0, at_base = 1, asleep = 2;
-}
 
 /// state: evolves, is part of a checkpoint. scratch: recomputed in every window from state.
 enum class Storage { state, scratch };
@@ -219,7 +214,8 @@ class ParticleStore {
   void permute(const std::vector<std::int64_t>& new_to_old);
   /// Divides a cell: the daughter at +offset stays at this index, the other becomes the last that takes part.
   /// Every field follows its own rule. Paper 4.2.
-  void divide(std::size_t mother, const Vec<Dim>& axis, double length_mm, std::int64_t first_id, std::int64_t second_id);
+  void divide(std::size_t mother, const Vec<Dim>& axis, double length_mm, std::int64_t first_id,
+              std::int64_t second_id);
 
  private:
   std::vector<std::unique_ptr<FieldBase<Dim>>> fields_;
@@ -228,18 +224,18 @@ class ParticleStore {
  public:
   // What every scene has. Stress and frame: stress lives in the material frame, whose axes are the
   // columns of `frame` (first: the root axis, pointing to the tip).
-  Field<Dim, Vec<Dim>>& position;              ///< mm
-  Field<Dim, Vec<Dim>>& velocity;              ///< mm/h
-  Field<Dim, double>& volume;                  ///< mm^Dim
-  Field<Dim, double>& mass;                    ///< ug: biological mass
-  Field<Dim, Voigt<Dim>>& stress;              ///< MPa, tension positive, material frame, without the pressure p
-  Field<Dim, Mat<Dim>>& frame;                 ///< rotation
-  Field<Dim, Mat<Dim>>& shape;                 ///< Q of the paper, 1/mm^2: eigenvalues 4/length^2
-  Field<Dim, double>& distance_to_tip;         ///< mm, along the root
+  Field<Dim, Vec<Dim>>& position;       ///< mm
+  Field<Dim, Vec<Dim>>& velocity;       ///< mm/h
+  Field<Dim, double>& volume;           ///< mm^Dim
+  Field<Dim, double>& mass;             ///< ug: biological mass
+  Field<Dim, Voigt<Dim>>& stress;       ///< MPa, tension positive, material frame, without the pressure p
+  Field<Dim, Mat<Dim>>& frame;          ///< rotation
+  Field<Dim, Mat<Dim>>& shape;          ///< Q of the paper, 1/mm^2: eigenvalues 4/length^2
+  Field<Dim, double>& distance_to_tip;  ///< mm, along the root
   Field<Dim, std::int64_t>& generation;
   Field<Dim, std::int64_t>& cell_id;
-  Field<Dim, std::int64_t>& parent_id;         ///< -1: there from the start
-  Field<Dim, std::int64_t>& clamped;           ///< 0: free; otherwise held (hold)
+  Field<Dim, std::int64_t>& parent_id;  ///< -1: there from the start
+  Field<Dim, std::int64_t>& clamped;    ///< 1 where the cell is held
 };
 
 extern template class ParticleStore<2>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One progress line on a terminal, a line a minute elsewhere.
+// One progress line on a terminal; elsewhere a line after ten seconds, to show that all is well, and then one a minute.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,8 @@ std::string clock_text(double seconds);
 
 class ProgressLine {
  public:
-  explicit ProgressLine(bool quiet);
+  /// \param between_lines where there is no terminal
+  explicit ProgressLine(bool quiet, std::chrono::milliseconds between_lines = std::chrono::minutes(1));
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine() { end(); }  ///< also when an error ends the task: its message starts on a new line
@@ -23,6 +24,7 @@ class ProgressLine {
 
  private:
   bool quiet_, terminal_;
+  std::chrono::milliseconds between_;
   bool line_open_ = false;
   std::chrono::steady_clock::time_point next_;
 };

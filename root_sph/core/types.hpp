@@ -8,8 +8,6 @@
 
 #include <Eigen/Dense>
 
-#include <cstdint>
-
 namespace rootsoil {
 
 template <int Dim>
@@ -20,7 +18,7 @@ using Mat = Eigen::Matrix<double, Dim, Dim>;
 
 /// Number of components of a symmetric tensor.
 template <int Dim>
-inline constexpr int voigt_size = Dim * (Dim + 1) / 2;
+inline constexpr int voigt_size = Dim*(Dim + 1) / 2;
 
 /// Symmetric tensor, normal components first: 2D (11, 22, 12), 3D (11, 22, 33, 23, 13, 12).
 /// Stresses hold the tensor's components; strain rates hold engineering shear (twice the component).

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/dynamics/gradient.hpp"
 
-#include "root_sph/kernels/wendland.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "root_sph/core/symmetric.hpp"
+#include "root_sph/kernels/wendland.hpp"
 
 namespace rootsoil {
 namespace {
 
 template <int Dim>
-inline constexpr int basis_size = Dim + Dim * (Dim + 1) / 2;  // linear and quadratic monomials
+inline constexpr int basis_size = Dim + Dim*(Dim + 1) / 2;  // linear and quadratic monomials
 
 template <int Dim>
 using Basis = Eigen::Matrix<double, basis_size<Dim>, 1>;
@@ -43,26 +44,27 @@ struct Neighbourhood {
 template <int Dim>
 Mat<Dim> guarded_inverse(const Mat<Dim>& m, bool& degenerate) {
   constexpr double smallest_relative_eigenvalue = 0.02;
-  const Eigen::SelfAdjointEigenSolver<Mat<Dim>> solver(m);
-  Vec<Dim> values = solver.eigenvalues();
+  const SymmetricEigen<Dim> eigen = symmetric_eigen<Dim>(m);
+  Vec<Dim> values = eigen.values;
   const double largest = values[Dim - 1];
   degenerate = !(values[0] > smallest_relative_eigenvalue * largest) || largest <= 0.0;
   for (int a = 0; a < Dim; ++a) {
     values[a] = largest > 0.0 && values[a] > smallest_relative_eigenvalue * largest ? 1.0 / values[a] : 0.0;
   }
-  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+  return eigen.vectors * values.asDiagonal() * eigen.vectors.transpose();
 }
 
-/// First Dim rows of the inverse of the scaled moment matrix, with a ridge on the quadratic monomials: curvature is taken to be
-/// small unless the neighbours say otherwise, so that irregular ones, or two rows that wave, do not invent it
-/// (docs/decisions/0017). Linear fields stay exact. `trust` in [0, 1] fades to 0 where the neighbours do not span space.
+/// First Dim rows of the inverse of the scaled moment matrix, with a ridge on the quadratic monomials: curvature is
+/// taken to be small unless the neighbours say otherwise, so that irregular ones, or two rows that wave, do not invent
+/// it (docs/decisions/0017). Linear fields stay exact. `trust` in [0, 1] fades to 0 where the neighbours do not span
+/// space.
 template <int Dim>
 Eigen::Matrix<double, Dim, basis_size<Dim>> quadratic_fit(
     const Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>& moment, double& trust) {
   constexpr double smallest_pivot = 1e-3, ridge = 0.05;
   using Moment = Eigen::Matrix<double, basis_size<Dim>, basis_size<Dim>>;
-  // Eigen's sums begin at the first aligned element: without a fixed alignment the last bits would depend on where the thread's
-  // stack lies.
+  // Eigen's sums begin at the first aligned element: without a fixed alignment the last bits would depend on where the
+  // thread's stack lies.
   constexpr std::size_t cache_line = 64;
   const Basis<Dim> scale = moment.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   alignas(cache_line) Moment scaled = scale.asDiagonal() * moment * scale.asDiagonal();
@@ -70,7 +72,8 @@ Eigen::Matrix<double, Dim, basis_size<Dim>> quadratic_fit(
   alignas(cache_line) const Eigen::LDLT<Moment> factors(scaled);
   trust = smooth_step(factors.vectorD().minCoeff(), smallest_pivot, 4.0 * smallest_pivot);
   if (trust <= 0.0) return Eigen::Matrix<double, Dim, basis_size<Dim>>::Zero();
-  alignas(cache_line) Eigen::Matrix<double, basis_size<Dim>, Dim> columns = Eigen::Matrix<double, basis_size<Dim>, Dim>::Zero();
+  alignas(cache_line) Eigen::Matrix<double, basis_size<Dim>, Dim> columns =
+      Eigen::Matrix<double, basis_size<Dim>, Dim>::Zero();
   columns.template topRows<Dim>() = scale.template head<Dim>().asDiagonal();
   factors.solveInPlace(columns);
   return (scale.asDiagonal() * columns).transpose();
@@ -88,7 +91,7 @@ GradientReport build_gradients(std::span<const Vec<Dim>> positions, std::span<co
   std::vector<double> slope(list.pairs.size());
   std::vector<Mat<Dim>> root(cells);  // L^T of M = L L^T
 #pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < cells; ++i) root[i] = metrics[i].llt().matrixL().transpose();
+  for (std::size_t i = 0; i < cells; ++i) root[i] = cholesky_factor<Dim>(metrics[i]).transpose();
 
   std::vector<Neighbourhood<Dim>> around(cells);
   for_each_block(list, [&](const PairBlock& block) {

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Where effects take part in a run: lists of passes, filled once when the scene is built. An effect that is absent
-// has no entry, so a run loops over exactly what it does.
+// Where effects take part in a run: a list of passes for every phase, filled once when the scene is built. An effect
+// that is absent has no entry, so a run loops over exactly what it does. What must come before what is the order of the
+// phases; passes of one phase do not depend on each other.
 #pragma once
-
-#include "root_sph/dynamics/pair_loop.hpp"
-#include "root_sph/dynamics/tissue.hpp"
 
 #include <chrono>
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "root_sph/dynamics/pair_loop.hpp"
+#include "root_sph/dynamics/tissue.hpp"
 
 namespace rootsoil {
 
@@ -34,25 +36,31 @@ struct Hooks {
   template <class... Arguments>
   using Passes = std::vector<std::pair<std::string, std::function<void(Tissue<Dim>&, Arguments...)>>>;
 
-  /// Forces of the outside, N, that cells at rest feel as well.
-  struct Load {
-    const Field<Dim, Vec<Dim>>* now;
-    Field<Dim, Vec<Dim>>* asleep;  ///< when the cell fell asleep
-  };
-
-  Passes<> window_start;  ///< before distances and neighbours: cells may divide here
+  // The window's start, in this order.
+  Passes<> loads;         ///< what acts from outside at this time: profiles may follow the pressure
+  Passes<> division;      ///< cells may divide
+  Passes<> rest;          ///< cells may fall asleep or wake; then distances and neighbours are found
   Passes<> parameters;    ///< distances are known: set what depends on them
+  Passes<> acceleration;  ///< add to the prescribed acceleration of cells, which the solver has cleared
   Passes<> operators;     ///< gradient operators are known as well
+  Passes<> pair_history;  ///< the pairs of this window carry what survived of the last one's
   Passes<std::vector<Vec<Dim>>&> stiffness;  ///< add to the stability bound, N/mm along the material axes
-  Passes<> step_start;
-  Passes<SlipAdvance> forces;  ///< add to the forces of cells
-  Passes<std::vector<char>&> busy;  ///< mark cells that must not fall asleep, now and then at a window's end
-  std::vector<Load> loads;
-  Passes<> window_end;         ///< pairs and deformation of the window are still there; what remains is state
+  Passes<std::vector<Vec<Dim>>&> coupling;   ///< the same for what is coupled from outside, with all else in the bound
+
+  // Every step.
+  Passes<> step_loads;
+  Passes<SlipAdvance> forces;                        ///< add to the forces of cells
+  Passes<std::vector<Mat<Dim>>&> contact_stiffness;  ///< without inertia: add what touches a cell now, N/mm
+
+  // The window's end, in this order: pairs and deformation of the window are still there; what remains is state.
+  Passes<> surface;   ///< what is carried along by the tissue moves
+  Passes<> exchange;  ///< motion goes out and forces come in
+  Passes<> spacing;   ///< cells may be moved where the tissue stays
+  Passes<> watch;     ///< distances and flow are those of the end: see what has become of it all
 
   template <class... Arguments>
   static void run(const Passes<Arguments...>& passes, PhaseClock& clock, Tissue<Dim>& tissue, Arguments... arguments) {
-    for (const auto& [name, pass] : passes) clock.measure(name, [&] { pass(tissue, arguments...); });
+    for (const auto& entry : passes) clock.measure(entry.first, [&] { entry.second(tissue, arguments...); });
   }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/dynamics/material_update.hpp"
 
-#include "root_sph/tissue/laws.hpp"
+#include "root_sph/core/choose.hpp"
 
 namespace rootsoil {
 namespace {
@@ -15,7 +15,7 @@ Mat<Dim> nominal_force_of(const Mat<Dim>& frame, const Voigt<Dim>& stress, doubl
   return volume * total * inverse_deformation.transpose();
 }
 
-template <int Dim, TissueLaw Law, bool Varying, bool Growing, MaterialStep Step>
+template <int Dim, class Law, bool Varying, bool Growing, bool Advancing>
 void update_material(Tissue<Dim>& tissue, double dt_h) {
   auto& cells = tissue.cells;
   const Material<Dim>& material = tissue.material;
@@ -30,48 +30,24 @@ void update_material(Tissue<Dim>& tissue, double dt_h) {
     const Mat<Dim> frame = cayley_rotation<Dim>(0.5 * (l - l.transpose())) * cells.frame[i];
     const Voigt<Dim> strain = to_strain_voigt<Dim>(frame.transpose() * strain_matrix * frame);
     const double volume = cells.volume[i] * (after.determinant() / before.determinant());
-    Voigt<Dim> stress = cells.stress[i];
-    double mass = cells.mass[i];
-
     const Stiffness<Dim>& k = Varying ? (*material.stiffness)[i] : material.uniform;
-    if constexpr (Law == TissueLaw::elastic_growth) {
-      const double growth = Growing ? dt_h * (*material.softening)[i] / material.rho0_ug_mm3 : 0.0;
-      const double gained = elastic_growth_step<Dim>(k, strain, growth, stress);
-      if constexpr (Growing) mass *= 1.0 + gained;
-    } else {
-      const double reference = material.rho0_ug_mm3 * volume;  // mass at rho0
-      if constexpr (Growing) {
-        mass += dt_h * volume * mass_source((*material.softening)[i], mass / reference);
-      }
-      Voigt<Dim> deviatoric = (*material.deviatoric_stress)[i];
-      stress = pressure_deviator_step<Dim>(k, strain, mass / reference, deviatoric);
-      if constexpr (Step == MaterialStep::advance) (*material.deviatoric_stress)[i] = deviatoric;
-    }
-    tissue.nominal_force[i] = nominal_force_of<Dim>(frame, stress, volume, after.inverse(), tissue.pressure_MPa);
+    const double lambda = Growing ? (*material.softening)[i] : 0.0;
+    typename Law::State state(cells.stress[i], cells.mass[i]);
+    for (std::size_t c = 0; c < Law::columns.size(); ++c) state.columns[c] = (*material.law_columns[c])[i];
+    Law::step({k, strain, volume, dt_h, lambda, material.rho0_ug_mm3}, state);
+
+    tissue.nominal_force[i] = nominal_force_of<Dim>(frame, state.stress, volume, after.inverse(), tissue.pressure_MPa);
     tissue.force[i].setZero();
-    if constexpr (Step == MaterialStep::advance) {
+    if constexpr (Advancing) {
       cells.frame[i] = frame;
       cells.volume[i] = volume;
-      cells.stress[i] = stress;
-      cells.mass[i] = mass;
+      cells.stress[i] = state.stress;
+      cells.mass[i] = state.mass;
+      for (std::size_t c = 0; c < Law::columns.size(); ++c) (*material.law_columns[c])[i] = state.columns[c];
       tissue.axial_strain[i] += strain[0];
       tissue.deformation[i] = after;
     }
   }
-}
-
-template <int Dim, TissueLaw Law, MaterialStep Step>
-MaterialLoop<Dim> choose_columns(const Material<Dim>& m) {
-  if (m.stiffness) {
-    return m.softening ? update_material<Dim, Law, true, true, Step> : update_material<Dim, Law, true, false, Step>;
-  }
-  return m.softening ? update_material<Dim, Law, false, true, Step> : update_material<Dim, Law, false, false, Step>;
-}
-
-template <int Dim, MaterialStep Step>
-MaterialLoop<Dim> choose_law(const Material<Dim>& m) {
-  return m.law == TissueLaw::elastic_growth ? choose_columns<Dim, TissueLaw::elastic_growth, Step>(m)
-                                            : choose_columns<Dim, TissueLaw::pressure_deviator, Step>(m);
 }
 
 }  // namespace
@@ -94,8 +70,15 @@ Mat<3> cayley_rotation<3>(const Mat<3>& spin_times_dt) {
 
 template <int Dim>
 MaterialLoop<Dim> choose_material_loop(const Material<Dim>& material, MaterialStep step) {
-  return step == MaterialStep::advance ? choose_law<Dim, MaterialStep::advance>(material)
-                                       : choose_law<Dim, MaterialStep::predict>(material);
+  return visit_law<Dim>(material.law, [&]<class Law>(Law) {
+    return choose(material.stiffness != nullptr, [&](auto varying) {
+      return choose(material.softening != nullptr, [&](auto growing) {
+        return choose(step == MaterialStep::advance, [&](auto advancing) -> MaterialLoop<Dim> {
+          return update_material<Dim, Law, varying, growing, advancing>;
+        });
+      });
+    });
+  });
 }
 
 template <int Dim>

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/dynamics/pair_loop.hpp"
 
+#include "root_sph/core/choose.hpp"
+
 namespace rootsoil {
 namespace {
 
 // Both loops go row by row: what belongs to cell i stays in registers while its partners j > i pass by.
 
-template <int Dim, bool NonAffine, bool Creeping, bool Viscous>
+template <int Dim, bool NonAffine, bool Creeping, bool Damped, bool Viscous>
 void add_forces(Tissue<Dim>& tissue, PairTerms<Dim>& terms, SlipAdvance advance) {
   const Pair* const pairs = tissue.pairs.pairs.data();
   const std::int64_t* const row = tissue.pairs.row.data();
@@ -35,7 +37,7 @@ void add_forces(Tissue<Dim>& tissue, PairTerms<Dim>& terms, SlipAdvance advance)
         Vec<Dim> f = nominal_i * gradients[k].at_i - nominal[j] * gradients[k].at_j;
         if constexpr (NonAffine || Viscous) {
           const Vec<Dim> du = velocity[j] - velocity_i;
-          const double both = damping[i] + damping[j];
+          const double both = Damped || Viscous ? damping[i] + damping[j] : 0.0;
           Vec<Dim> resisted = Vec<Dim>::Zero();
           if constexpr (NonAffine) {
             const Vec<Dim> r = start[j] - start[i];
@@ -46,7 +48,8 @@ void add_forces(Tissue<Dim>& tissue, PairTerms<Dim>& terms, SlipAdvance advance)
               used *= retention[k];
               if (advance.kept_h > 0.0) kept *= retention[k];
             }
-            resisted += control_damping * both * v + control_stiffness * used;
+            resisted += control_stiffness * used;
+            if constexpr (Damped) resisted += control_damping * both * v;
             slip[k] = kept;
           }
           if constexpr (Viscous) resisted += viscosity * both * du;
@@ -88,9 +91,16 @@ void compute_velocity_gradients(Tissue<Dim>& tissue) {
 
 template <int Dim>
 ForceLoop<Dim> choose_force_loop(const PairTerms<Dim>& terms, bool grows) {
-  if (!terms.non_affine) return terms.viscosity ? add_forces<Dim, false, false, true> : add_forces<Dim, false, false, false>;
-  if (grows) return terms.viscosity ? add_forces<Dim, true, true, true> : add_forces<Dim, true, true, false>;
-  return terms.viscosity ? add_forces<Dim, true, false, true> : add_forces<Dim, true, false, false>;
+  const auto& control = terms.non_affine;
+  return choose(terms.viscosity.has_value(), [&](auto viscous) {
+    return choose(control.has_value(), [&](auto non_affine) -> ForceLoop<Dim> {
+      if constexpr (!non_affine) return add_forces<Dim, false, false, false, viscous>;
+      return choose(grows, [&](auto creeping) {
+        return choose(control->damping > 0.0,
+                      [&](auto damped) -> ForceLoop<Dim> { return add_forces<Dim, true, creeping, damped, viscous>; });
+      });
+    });
+  });
 }
 
 template void compute_velocity_gradients<2>(Tissue<2>&);

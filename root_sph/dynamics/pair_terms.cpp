@@ -16,17 +16,31 @@ PairTerms<Dim> make_pair_terms(ParticleStore<Dim>& cells, double E_axial_MPa, st
         {},
         {},
         &cells.template declare<Vec<Dim>>({"start_position", "mm", "at the start of the window", Storage::scratch},
-                                         on_division::recomputed<Dim, Vec<Dim>>),
+                                          on_division::recomputed<Dim, Vec<Dim>>),
         &cells.template declare<Mat<Dim>>({"start_frame", "1", "at the start of the window", Storage::scratch},
-                                         on_division::recomputed<Dim, Mat<Dim>>)});
+                                          on_division::recomputed<Dim, Mat<Dim>>)});
   }
   if (artificial_viscosity > 0.0) terms.viscosity = ArtificialViscosity{artificial_viscosity};
-  if (terms.any()) {
+  if (terms.damps()) {
     terms.damping = &cells.template declare<double>(
         {"pair_damping", "N h/mm^2", "damping constant of pair motions", Storage::scratch},
         on_division::recomputed<Dim, double>);
   }
   return terms;
+}
+
+template <int Dim>
+void set_slip_retention(const Tissue<Dim>& tissue, PairTerms<Dim>& terms) {
+  const auto* const softening = tissue.material.softening;
+  if (!terms.non_affine || !softening) return;
+  const auto& pairs = tissue.pairs.pairs;
+  terms.non_affine->retention.resize(pairs.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [i, j] = pairs[k];
+    const double rate = slip_creep_ratio * 0.5 * ((*softening)[i] + (*softening)[j]) / tissue.material.rho0_ug_mm3;
+    terms.non_affine->retention[k] = 1.0 / (1.0 + tissue.step_h * rate);
+  }
 }
 
 template <int Dim>
@@ -36,11 +50,7 @@ void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, Pa
   const auto& pairs = tissue.pairs.pairs;
   terms.weight.resize(pairs.size());
   std::vector<Vec<Dim>> slip;
-  const auto* const softening = tissue.material.softening;
-  if (terms.non_affine) {
-    slip.assign(pairs.size(), Vec<Dim>::Zero());
-    if (softening) terms.non_affine->retention.resize(pairs.size());
-  }
+  if (terms.non_affine) slip.assign(pairs.size(), Vec<Dim>::Zero());
 
 #pragma omp parallel for schedule(static)
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -50,10 +60,6 @@ void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, Pa
     terms.weight[k] = cells.volume[i] * cells.volume[j] * tissue.kernel[k] / (r2 + 0.3 * std::pow(smaller, 2.0 / Dim));
 
     if (!terms.non_affine) continue;
-    if (softening) {
-      const double rate = slip_creep_ratio * 0.5 * ((*softening)[i] + (*softening)[j]) / tissue.material.rho0_ug_mm3;
-      terms.non_affine->retention[k] = 1.0 / (1.0 + tissue.step_h * rate);
-    }
     std::int64_t a = tissue.window_index[i], b = tissue.window_index[j];
     if (a < 0 || b < 0) continue;  // a new cell has no history
     const double sign = a < b ? 1.0 : -1.0;
@@ -66,10 +72,13 @@ void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, Pa
     slip[k] = sign * (turn * terms.non_affine->slip_mm[found - old_pairs.pairs.begin()]);
   }
   if (terms.non_affine) terms.non_affine->slip_mm.swap(slip);
+  set_slip_retention<Dim>(tissue, terms);
 }
 
 template PairTerms<2> make_pair_terms<2>(ParticleStore<2>&, double, std::optional<double>, double, double);
 template PairTerms<3> make_pair_terms<3>(ParticleStore<3>&, double, std::optional<double>, double, double);
+template void set_slip_retention<2>(const Tissue<2>&, PairTerms<2>&);
+template void set_slip_retention<3>(const Tissue<3>&, PairTerms<3>&);
 template void rebuild_pair_terms<2>(const Tissue<2>&, const PairList&, PairTerms<2>&);
 template void rebuild_pair_terms<3>(const Tissue<3>&, const PairList&, PairTerms<3>&);
 

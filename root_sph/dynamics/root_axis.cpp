@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/dynamics/root_axis.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "root_sph/core/errors.hpp"
+#include "root_sph/dynamics/cell_axes.hpp"
 
 namespace rootsoil {
 namespace {
@@ -22,16 +27,20 @@ void fill_gaps(std::vector<double>& value, const std::vector<double>& weight) {
   if (last >= 0) std::fill(value.begin() + last + 1, value.end(), value[last]);
 }
 
-/// Length of a cell along a direction, from its centre to its surface.
-template <int Dim>
-double half_extent(const Mat<Dim>& shape, const Vec<Dim>& direction) {
-  return std::sqrt(direction.dot(shape.inverse() * direction));
-}
-
 /// Of a root with this section: in 2D, where a volume is an area, the section is the diameter.
 template <int Dim>
 double diameter_of(double section) {
   return Dim == 2 ? section : std::sqrt(4.0 * section / std::numbers::pi);
+}
+
+/// Memory and time go with this: a root that is a thread of 10^6 diameters has come apart.
+std::size_t bins_along(double length_mm, double width_mm) {
+  constexpr double most = 4e6;
+  if (length_mm <= most * width_mm) return static_cast<std::size_t>(std::max(0.0, length_mm / width_mm));
+  throw UnphysicalError(
+      fmt::format("the tissue came apart: {:.4g} mm from the tip to the last cell, which is more than "
+                  "{:.0e} times the width of a slice, {:.4g} mm",
+                  length_mm, most, width_mm));
 }
 
 std::size_t bin_of(double s_mm, double width_mm) { return static_cast<std::size_t>(std::max(0.0, s_mm / width_mm)); }
@@ -54,27 +63,33 @@ void RootAxis<Dim>::anchor(Tissue<Dim>& tissue) {
   auto& cells = tissue.cells;
   double furthest = 0.0;
   for (const double s : cells.active(cells.distance_to_tip)) furthest = std::max(furthest, s);
-  // Slices wide enough for many cells of both sides: two of the longest cells, at least a diameter, that of the start and the
-  // present mean one. Cells at rest count, so that those awake lie in the same slices with and without them.
+  // Slices wide enough for many cells of both sides: two of the longest cells, at least a diameter, that of the start
+  // and the present mean one. Cells at rest count, so that those awake lie in the same slices with and without them.
   double longest = 0.0, volume = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     longest = std::max(longest, 2.0 * half_extent<Dim>(cells.shape[i], cells.frame[i].col(0)));
   }
   for (std::size_t i = 0; i < cells.total(); ++i) {
-    if (cells.clamped[i] != hold::at_base) volume += cells.volume[i];
+    if (!tissue.is_base(i)) volume += cells.volume[i];
   }
   double width = std::max(4.0 * bin_mm_, 2.0 * longest);
   if (length_mm_ > 0.0) width = std::max(width, diameter_of<Dim>(volume / length_mm_));
 
   // the last, partial slice joins the one before it
-  const std::size_t slices = std::max<std::size_t>(1, static_cast<std::size_t>(furthest / width));
+  const std::size_t slices = std::max<std::size_t>(1, bins_along(furthest, width));
   std::vector<Vec<Dim>> knot(slices, Vec<Dim>::Zero());
   std::vector<double> weight(slices, 0.0);
   const auto slice_of = [&](std::size_t i) { return std::min(slices - 1, bin_of(cells.distance_to_tip[i], width)); };
+  // A cell counts for the two slices whose middles it lies between, so that no centroid jumps when it passes from one
+  // to the other.
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::size_t b = slice_of(i);
-    knot[b] += cells.volume[i] * cells.position[i];
-    weight[b] += cells.volume[i];
+    const double z = std::clamp(cells.distance_to_tip[i] / width - 0.5, 0.0, static_cast<double>(slices - 1));
+    const std::size_t b = bin_of(z, 1.0), next = std::min(slices - 1, b + 1);
+    const double share = z - static_cast<double>(b);
+    knot[b] += (1.0 - share) * cells.volume[i] * cells.position[i];
+    weight[b] += (1.0 - share) * cells.volume[i];
+    knot[next] += share * cells.volume[i] * cells.position[i];
+    weight[next] += share * cells.volume[i];
   }
   std::vector<Vec<Dim>> line;
   std::vector<std::size_t> knot_of_slice(slices, 0);
@@ -100,7 +115,7 @@ void RootAxis<Dim>::anchor(Tissue<Dim>& tissue) {
       const Vec<Dim> along = line[k + 1] - line[k];
       const double length2 = along.squaredNorm();
       double t = length2 > 0.0 ? (x - line[k]).dot(along) / length2 : 0.0;
-      if (k > 0) t = std::max(t, 0.0);                      // the ends go on as straight lines
+      if (k > 0) t = std::max(t, 0.0);  // the ends go on as straight lines
       if (k + 2 < line.size()) t = std::min(t, 1.0);
       const double distance2 = (x - line[k] - t * along).squaredNorm();
       if (distance2 < best) {
@@ -126,18 +141,18 @@ void RootAxis<Dim>::anchor(Tissue<Dim>& tissue) {
       length_mm_ = std::max(length_mm_, end);
     }
   }
-  length_mm_ += resting_mm_;
+  length_mm_ += still_mm_;
   tip_mm_ = line[0] - first * tipwards;
 }
 
 template <int Dim>
-void RootAxis<Dim>::measure_flow(const Tissue<Dim>& tissue, double window_h) {
+void RootAxis<Dim>::measure_flow(const Tissue<Dim>& tissue, std::span<const double> distance_mm, double window_h) {
   const auto& cells = tissue.cells;
-  const std::size_t bins = bin_of(length_mm_, bin_mm_) + 2;
+  const std::size_t bins = bins_along(length_mm_, bin_mm_) + 2;
   std::vector<double> rate(bins, 0.0), weight(bins, 0.0);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells.clamped[i]) continue;
-    const std::size_t b = std::min(bins - 1, bin_of(cells.distance_to_tip[i], bin_mm_));
+    const std::size_t b = std::min(bins - 1, bin_of(distance_mm[i], bin_mm_));
     rate[b] += cells.volume[i] * tissue.axial_strain[i] / window_h;
     weight[b] += cells.volume[i];
   }
@@ -178,7 +193,7 @@ double RootAxis<Dim>::steady_acceleration(double s_mm) const {
 
 template <int Dim>
 std::vector<double> RootAxis<Dim>::save() const {
-  std::vector<double> saved{bin_mm_, length_mm_, resting_mm_};
+  std::vector<double> saved{bin_mm_, length_mm_, still_mm_};
   saved.insert(saved.end(), tip_mm_.data(), tip_mm_.data() + Dim);
   saved.insert(saved.end(), flow_mm_h_.begin(), flow_mm_h_.end());
   return saved;
@@ -189,7 +204,7 @@ void RootAxis<Dim>::restore(const std::vector<double>& saved) {
   ROOTSOIL_ASSERT(saved.size() >= 3 + Dim);
   bin_mm_ = saved[0];
   length_mm_ = saved[1];
-  resting_mm_ = saved[2];
+  still_mm_ = saved[2];
   tip_mm_ = Eigen::Map<const Vec<Dim>>(saved.data() + 3);
   flow_mm_h_.assign(saved.begin() + 3 + Dim, saved.end());
 }
@@ -199,44 +214,62 @@ double mean_section(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis) {
   const auto& cells = tissue.cells;
   double volume = 0.0;
   for (std::size_t i = 0; i < cells.total(); ++i) {
-    if (cells.clamped[i] != hold::at_base) volume += cells.volume[i];
+    if (!tissue.is_base(i)) volume += cells.volume[i];
   }
   return volume / axis.length_mm();
 }
 
 template <int Dim>
-double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, double window_h) {
-  if (tissue.pressure_MPa == 0.0 || window_h <= 0.0) return 0.0;
+void InertiaImpulse<Dim>::add_window(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, double window_h) {
   const auto& cells = tissue.cells;
   const double width = axis.bin_mm();
-  const std::size_t bins = bin_of(axis.length_mm(), width) + 1;
-  std::vector<double> force(bins, 0.0), volume(bins, 0.0);
-  double total = 0.0;
+  const std::size_t bins = bins_along(axis.length_mm(), width) + 1;
+  impulse_N_h_.resize(std::max(bins, impulse_N_h_.size()), 0.0);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (cells.clamped[i]) continue;
+    if (cells.clamped[i] || !(tissue.inertia->inverse[i][0] > 0.0)) continue;
+    Vec<Dim> change = cells.velocity[i] - tissue.inertia->start_velocity[i];
+    if (tissue.body_acceleration) change -= window_h * (*tissue.body_acceleration)[i];
     const std::size_t b = std::min(bins - 1, bin_of(cells.distance_to_tip[i], width));
-    Vec<Dim> acceleration = (cells.velocity[i] - tissue.start_velocity[i]) / window_h;
-    if (tissue.body_acceleration) acceleration -= (*tissue.body_acceleration)[i];
-    if (tissue.inverse_inertia[i][0] > 0.0) {
-      force[b] += acceleration.dot(cells.frame[i].col(0)) / tissue.inverse_inertia[i][0];
-    }
-    volume[b] += cells.volume[i];
-    total += cells.volume[i];
+    impulse_N_h_[b] += change.dot(cells.frame[i].col(0)) / tissue.inertia->inverse[i][0];
   }
-  const double section = total / axis.awake_length_mm();
+  duration_h_ += window_h;
+}
+
+template <int Dim>
+double InertiaImpulse<Dim>::error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis) const {
+  if (tissue.pressure_MPa == 0.0 || duration_h_ <= 0.0) return 0.0;
+  const auto& cells = tissue.cells;
+  double volume = 0.0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!cells.clamped[i]) volume += cells.volume[i];
+  }
+  const double section = volume / axis.moving_length_mm();
   double sum = 0.0, worst = 0.0;
-  for (std::size_t b = 0; b < bins; ++b) {
-    sum += force[b];
+  for (const double impulse : impulse_N_h_) {
+    sum += impulse;
     worst = std::max(worst, std::abs(sum));
   }
-  return worst / (std::abs(tissue.pressure_MPa) * section);
+  return worst / (duration_h_ * std::abs(tissue.pressure_MPa) * section);
+}
+
+template <int Dim>
+std::vector<double> InertiaImpulse<Dim>::save() const {
+  std::vector<double> saved{duration_h_};
+  saved.insert(saved.end(), impulse_N_h_.begin(), impulse_N_h_.end());
+  return saved;
+}
+
+template <int Dim>
+void InertiaImpulse<Dim>::restore(const std::vector<double>& saved) {
+  duration_h_ = saved.at(0);
+  impulse_N_h_.assign(saved.begin() + 1, saved.end());
 }
 
 template class RootAxis<2>;
 template class RootAxis<3>;
 template double mean_section<2>(const Tissue<2>&, const RootAxis<2>&);
 template double mean_section<3>(const Tissue<3>&, const RootAxis<3>&);
-template double inertia_error<2>(const Tissue<2>&, const RootAxis<2>&, double);
-template double inertia_error<3>(const Tissue<3>&, const RootAxis<3>&, double);
+template class InertiaImpulse<2>;
+template class InertiaImpulse<3>;
 
 }  // namespace rootsoil

@@ -2,9 +2,10 @@
 // The root as a line: distance from the tip along a bent root, and how fast the tissue flows along it.
 #pragma once
 
-#include "root_sph/dynamics/tissue.hpp"
-
+#include <span>
 #include <vector>
+
+#include "root_sph/dynamics/tissue.hpp"
 
 namespace rootsoil {
 
@@ -21,30 +22,31 @@ class RootAxis {
   /// New distances from the present positions.
   void anchor(Tissue<Dim>& tissue);
   /// Updates the flow profile from the axial strains of the window that ends; smoothed over 0.1 h.
-  void measure_flow(const Tissue<Dim>& tissue, double window_h);
+  /// \param distance_mm of each cell from the tip in the middle of the window
+  void measure_flow(const Tissue<Dim>& tissue, std::span<const double> distance_mm, double window_h);
   /// Sets the profile, e.g. from the closed form: flow_mm_h[k] at s = k bin_mm().
   void set_flow(std::vector<double> flow_mm_h) { flow_mm_h_ = std::move(flow_mm_h); }
 
   double bin_mm() const { return bin_mm_; }
-  double length_mm() const { return length_mm_; }        ///< tip to base along the root
-  double awake_length_mm() const { return length_mm_ - resting_mm_; }  ///< tip to where the cells that move end
+  double length_mm() const { return length_mm_; }                     ///< tip to base along the root
+  double moving_length_mm() const { return length_mm_ - still_mm_; }  ///< tip to where the cells that move end
   /// Length of the part next to the base whose cells do not move and are not asked for their place.
-  void set_resting_length(double length_mm) { resting_mm_ = length_mm; }
-  const Vec<Dim>& tip_mm() const { return tip_mm_; }     ///< the point s = 0
+  void set_still_length(double length_mm) { still_mm_ = length_mm; }
+  const Vec<Dim>& tip_mm() const { return tip_mm_; }  ///< the point s = 0
   const std::vector<double>& flow() const { return flow_mm_h_; }
-  double flow_mm_h(double s_mm) const;                    ///< v(s)
-  double strain_rate_per_h(double s_mm) const;            ///< dv/ds
+  double flow_mm_h(double s_mm) const;          ///< v(s)
+  double strain_rate_per_h(double s_mm) const;  ///< dv/ds
   /// Axial acceleration of the tissue in steady growth above a held base, mm/h^2: e(L) v(L) - e(s) v(s).
   double steady_acceleration(double s_mm) const;
 
-  /// State for a checkpoint: bin, length, resting length, tip, flow.
+  /// State for a checkpoint: bin, length, still length, tip, flow.
   std::vector<double> save() const;
   void restore(const std::vector<double>& saved);
 
  private:
   double bin_mm_ = 0.0;
   double length_mm_ = 0.0;
-  double resting_mm_ = 0.0;
+  double still_mm_ = 0.0;
   Vec<Dim> tip_mm_ = Vec<Dim>::Zero();
   std::vector<double> flow_mm_h_;
 };
@@ -53,13 +55,38 @@ class RootAxis {
 template <int Dim>
 double mean_section(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis);
 
-/// max over s of |sum of unbalanced axial force between the tip and s| / (p x cross-section): by how much inertia
-/// changes the axial stress, relative to the pressure differential. Mean over the latest window, from the change of
-/// momentum beyond what prescribed accelerations explain; the chatter of contacts within a window does not count.
+/// By how much inertia changes the axial stress, on the mean over some windows: their impulses beyond what prescribed
+/// accelerations explain, summed along the root. Thrust lasts and adds up; the chatter of contacts, to and fro, does
+/// not.
 template <int Dim>
-double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, double window_h);
+class InertiaImpulse {
+ public:
+  /// The window that has just ended.
+  void add_window(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, double window_h);
+  /// max over s of |mean unbalanced axial force between the tip and s| / (p x cross-section), relative; 0 before the
+  /// first window and without a pressure differential.
+  double error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis) const;
+
+  /// State for a checkpoint: duration (h), then the impulses of the axis' bins (N h).
+  std::vector<double> save() const;
+  void restore(const std::vector<double>& saved);
+
+ private:
+  double duration_h_ = 0.0;
+  std::vector<double> impulse_N_h_;
+};
+
+/// That of one window.
+template <int Dim>
+double inertia_error(const Tissue<Dim>& tissue, const RootAxis<Dim>& axis, double window_h) {
+  InertiaImpulse<Dim> impulse;
+  impulse.add_window(tissue, axis, window_h);
+  return impulse.error(tissue, axis);
+}
 
 extern template class RootAxis<2>;
 extern template class RootAxis<3>;
+extern template class InertiaImpulse<2>;
+extern template class InertiaImpulse<3>;
 
 }  // namespace rootsoil

@@ -22,8 +22,9 @@ void moduli(const Stiffness<Dim>& k, Mat<Dim>& normal, Mat<Dim>& shear) {
   }
 }
 
-/// The diagonal d of which diag(d) - m is positive semidefinite, for positive semidefinite m: of 2 m_ab x_a x_b the large
-/// entry takes as much of its own size as the small one. m itself where it is diagonal: where neighbours' frames are alike.
+/// The diagonal d of which diag(d) - m is positive semidefinite, for positive semidefinite m: of 2 m_ab x_a x_b the
+/// large entry takes as much of its own size as the small one. m itself where it is diagonal: where neighbours' frames
+/// are alike.
 template <int Dim>
 Vec<Dim> diagonal_bound(const Mat<Dim>& m) {
   Vec<Dim> d = m.diagonal();
@@ -105,7 +106,7 @@ void set_inertia(Tissue<Dim>& tissue, PairTerms<Dim>& terms, const std::vector<V
     inertia[i] = 0.25 * dt * dt * stiffness[i];
     if (mode == InertiaMode::scalar) inertia[i].setConstant(inertia[i].maxCoeff());
   }
-  if (terms.any()) {
+  if (terms.damps()) {
     double factor = terms.viscosity ? terms.viscosity->coefficient : 0.0;
     if (terms.non_affine) factor += terms.non_affine->damping;
     std::vector<double> damped(n, 0.0);
@@ -130,8 +131,8 @@ void set_inertia(Tissue<Dim>& tissue, PairTerms<Dim>& terms, const std::vector<V
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < n; ++i) {
     // a lone cell has no stiffness and nothing moves it
-    tissue.inverse_inertia[i] = cells.clamped[i] || inertia[i].minCoeff() <= 0.0 ? Vec<Dim>(Vec<Dim>::Zero())
-                                                                                : Vec<Dim>(inertia[i].cwiseInverse());
+    tissue.inertia->inverse[i] = cells.clamped[i] || inertia[i].minCoeff() <= 0.0 ? Vec<Dim>(Vec<Dim>::Zero())
+                                                                                  : Vec<Dim>(inertia[i].cwiseInverse());
   }
 }
 
@@ -140,8 +141,8 @@ double critical_mass_damping(const Tissue<Dim>& tissue) {
   const auto& cells = tissue.cells;
   double inertia = 0.0, volume = 0.0, length = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (tissue.inverse_inertia[i][0] <= 0.0) continue;
-    inertia += 1.0 / tissue.inverse_inertia[i][0];
+    if (tissue.inertia->inverse[i][0] <= 0.0) continue;
+    inertia += 1.0 / tissue.inertia->inverse[i][0];
     volume += cells.volume[i];
     length = std::max(length, cells.distance_to_tip[i]);
   }

@@ -8,11 +8,10 @@
 #pragma once
 
 #include "root_sph/dynamics/pair_terms.hpp"
+#include "root_sph/dynamics/solver_options.hpp"
 #include "root_sph/dynamics/tissue.hpp"
 
 namespace rootsoil {
-
-enum class InertiaMode { tensor, scalar };
 
 /// Row sums of the stiffness along the material axes of each cell, N/mm: stress, and the non-affine penalty.
 template <int Dim>

@@ -7,12 +7,13 @@
 // window are therefore exact, whatever its length (docs/decisions/0002).
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <vector>
+
 #include "root_sph/core/particle_store.hpp"
 #include "root_sph/neighbours/pair_list.hpp"
-#include "root_sph/tissue/elasticity.hpp"
-
-#include <cstdint>
-#include <vector>
+#include "root_sph/tissue/laws/laws.hpp"
 
 namespace rootsoil {
 
@@ -23,21 +24,27 @@ struct PairGradient {
   Vec<Dim> at_i, at_j;
 };
 
-enum class TissueLaw { elastic_growth, pressure_deviator };
-
 /// Material data in the form that the cell loop reads. A null column does not exist in this run, and the loop
 /// is an instance without it.
 template <int Dim>
 struct Material {
-  TissueLaw law = TissueLaw::elastic_growth;
+  TissueLaw law = law_of<ElasticGrowth>;  ///< use_law sets it, with the columns that it carries
   double E_axial_MPa = 0.0;
   double rho0_ug_mm3 = 0.0;
-  Stiffness<Dim> uniform = Stiffness<Dim>::Zero();            ///< where stiffness does not vary
-  Field<Dim, Stiffness<Dim>>* stiffness = nullptr;            ///< where it does
-  Field<Dim, double>* softening = nullptr;                    ///< lambda, ug/(mm^3 h); growth
-  Field<Dim, Voigt<Dim>>* deviatoric_stress = nullptr;        ///< tau of pressure_deviator
+  Stiffness<Dim> uniform = Stiffness<Dim>::Zero();   ///< where stiffness does not vary
+  Field<Dim, Stiffness<Dim>>* stiffness = nullptr;   ///< where it does
+  Field<Dim, double>* softening = nullptr;           ///< lambda, ug/(mm^3 h); growth
+  std::vector<Field<Dim, Voigt<Dim>>*> law_columns;  ///< what the law carries besides the stress
 
   const Stiffness<Dim>& stiffness_of(std::size_t cell) const { return stiffness ? (*stiffness)[cell] : uniform; }
+};
+
+/// What moves masses: without inertia there is none of it.
+template <int Dim>
+struct Inertia {
+  Field<Dim, Vec<Dim>>& inverse;         ///< along the material axes, mm/(N h^2); 0 where held
+  Field<Dim, Vec<Dim>>& start_velocity;  ///< at the window's start, mm/h
+  double mass_damping_per_h = 0.0;
 };
 
 template <int Dim>
@@ -50,26 +57,32 @@ struct Tissue {
   Field<Dim, Mat<Dim>>& deformation;        ///< F since the window's start
   Field<Dim, Mat<Dim>>& nominal_force;      ///< V sigma_total F^-T, N mm
   Field<Dim, Vec<Dim>>& force;              ///< N
-  Field<Dim, Vec<Dim>>& inverse_inertia;    ///< along the material axes, mm/(N h^2); 0 where held
   Field<Dim, double>& axial_strain;         ///< since the window's start
-  Field<Dim, Vec<Dim>>& start_velocity;     ///< at the window's start, mm/h
   Field<Dim, std::int64_t>& window_index;   ///< index in the window before; -1: divided since
 
   PairList pairs;
   std::vector<PairGradient<Dim>> gradients;
   std::vector<double> kernel;  ///< W of each pair, 1/mm^Dim
 
-  Field<Dim, std::int64_t>* neighbours_at_rest = nullptr;  ///< of cells at rest; null: none ever rest
+  std::optional<Inertia<Dim>> inertia;                ///< absent: balance at every step
+  Field<Dim, std::int64_t>* asleep = nullptr;         ///< 1 for clamped cells that will wake; null: none ever sleep
   Field<Dim, Vec<Dim>>* body_acceleration = nullptr;  ///< mm/h^2, constant over a window; null: none
 
   double time_h = 0.0;
   double step_h = 0.0;
-  double pressure_MPa = 0.0;          ///< differential; total stress = stress - pressure 1
-  double mass_damping_per_h = 0.0;
+  double pressure_MPa = 0.0;  ///< differential; total stress = stress - pressure 1
   std::int64_t next_cell_id = 0;
 
   Tissue();
+  /// Adds the columns of inertia, once.
+  void need_inertia();
+  /// Clamped for good, and not part of the root that grows.
+  bool is_base(std::size_t cell) const { return cells.clamped[cell] && !(asleep && (*asleep)[cell]); }
 };
+
+/// Chooses the law, and declares what it carries.
+template <int Dim>
+void use_law(Tissue<Dim>& tissue, TissueLaw law);
 
 /// Kinetic (of the numerical inertia) and elastic energy, N mm.
 struct Energies {

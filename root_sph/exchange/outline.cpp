@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/exchange/outline.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "root_sph/core/errors.hpp"
 
 namespace rootsoil {
 namespace {
@@ -63,14 +59,9 @@ std::vector<Vec<2>> inset_line(const TissueShape<2>& shape, MarkerSize size) {
 
 }  // namespace
 
-Outline::Outline(const TissueView<2>& cells, MarkerSize size) : size_(size) {
+Outline::Outline(const TissueView<2>& cells, MarkerSize size) : Markers(size) {
   const TissueShape<2> shape(cells);
-  if (!(size.radius_mm < 0.8 * shape.radius_mm())) {
-    throw InputError({"", 0, "soil marker radius", "the root is too thin for surface markers of this size",
-                      fmt::format("{:.4g} mm", size.radius_mm),
-                      fmt::format("less than {:.4g} mm, 0.8 of the root's radius", 0.8 * shape.radius_mm()),
-                      "use smaller markers, or more cells across the root"});
-  }
+  refuse_thin(shape);
   position_ = resampled(inset_line(shape, size), size.spacing_mm);
   for (std::size_t i = 0; i < position_.size(); ++i) id_.push_back(next_id_++);
 }
@@ -120,23 +111,6 @@ std::vector<Vec<2>> Outline::normals() const {
     normals.push_back(Vec<2>(along[1], -along[0]).normalized());
   }
   return normals;
-}
-
-void Outline::save(const std::string& prefix, std::map<std::string, std::vector<double>>& reals) const {
-  std::vector<double>& position = reals[prefix + "position_mm"];
-  for (const Vec<2>& x : position_) position.insert(position.end(), x.data(), x.data() + 2);
-  reals[prefix + "id"].assign(id_.begin(), id_.end());
-  reals[prefix + "next_id"] = {static_cast<double>(next_id_)};
-}
-
-void Outline::restore(const std::string& prefix, const std::map<std::string, std::vector<double>>& reals) {
-  const std::vector<double>& position = reals.at(prefix + "position_mm");
-  const std::vector<double>& id = reals.at(prefix + "id");
-  ROOTSOIL_ASSERT(position.size() == 2 * id.size());
-  position_.clear();
-  for (std::size_t i = 0; i < id.size(); ++i) position_.emplace_back(position[2 * i], position[2 * i + 1]);
-  id_.assign(id.begin(), id.end());
-  next_id_ = static_cast<std::int64_t>(reals.at(prefix + "next_id").at(0));
 }
 
 }  // namespace rootsoil

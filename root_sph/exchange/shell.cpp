@@ -46,14 +46,9 @@ std::int32_t Shell::add(const Vec<3>& x) {
   return static_cast<std::int32_t>(position_.size() - 1);
 }
 
-Shell::Shell(const TissueView<3>& cells, MarkerSize size) : size_(size) {
+Shell::Shell(const TissueView<3>& cells, MarkerSize size) : Markers(size) {
   const TissueShape<3> shape(cells);
-  if (!(size.radius_mm < 0.8 * shape.radius_mm())) {
-    throw InputError({"", 0, "soil marker radius", "the root is too thin for surface markers of this size",
-                      fmt::format("{:.4g} mm", size.radius_mm),
-                      fmt::format("less than {:.4g} mm, 0.8 of the root's radius", 0.8 * shape.radius_mm()),
-                      "use smaller markers, or more cells across the root"});
-  }
+  refuse_thin(shape);
   const double cap_mm = std::min(shape.radius_mm(), 0.5 * shape.length_mm());
   const double base_mm = shape.length_mm() - shape.cell_size_mm();
   const double inset_mm = shape.radius_mm() - size.radius_mm;
@@ -264,25 +259,17 @@ void Shell::refine() {
 }
 
 void Shell::save(const std::string& prefix, std::map<std::string, std::vector<double>>& reals) const {
-  std::vector<double>& position = reals[prefix + "position_mm"];
-  for (const Vec<3>& x : position_) position.insert(position.end(), x.data(), x.data() + 3);
-  reals[prefix + "id"].assign(id_.begin(), id_.end());
-  reals[prefix + "next_id"] = {static_cast<double>(next_id_)};
+  Markers::save(prefix, reals);
   std::vector<double>& corners = reals[prefix + "triangles"];
   for (const Triangle& t : triangle_) corners.insert(corners.end(), t.begin(), t.end());
 }
 
 void Shell::restore(const std::string& prefix, const std::map<std::string, std::vector<double>>& reals) {
-  const std::vector<double>& position = reals.at(prefix + "position_mm");
-  const std::vector<double>& id = reals.at(prefix + "id");
+  Markers::restore(prefix, reals);
   const std::vector<double>& corners = reals.at(prefix + "triangles");
-  ROOTSOIL_ASSERT(position.size() == 3 * id.size() && corners.size() % 3 == 0);
-  position_.clear();
-  for (std::size_t i = 0; i < id.size(); ++i) position_.push_back(Eigen::Map<const Vec<3>>(position.data() + 3 * i));
-  id_.assign(id.begin(), id.end());
+  ROOTSOIL_ASSERT(corners.size() % 3 == 0);
   triangle_.resize(corners.size() / 3);
   for (std::size_t k = 0; k < corners.size(); ++k) triangle_[k / 3][k % 3] = static_cast<std::int32_t>(corners[k]);
-  next_id_ = static_cast<std::int64_t>(reals.at(prefix + "next_id").at(0));
 }
 
 }  // namespace rootsoil

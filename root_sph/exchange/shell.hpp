@@ -5,30 +5,24 @@
 
 #include <array>
 
-#include "root_sph/exchange/outline.hpp"
+#include "root_sph/exchange/markers.hpp"
 
 namespace rootsoil {
 
-class Shell {
+class Shell : public Markers<3> {
  public:
   using Triangle = std::array<std::int32_t, 3>;  ///< corners, counter-clockwise from outside
 
   /// For restore().
-  explicit Shell(MarkerSize size) : size_(size) {}
+  explicit Shell(MarkerSize size) : Markers(size) {}
   /// Round the cells, inset by the markers' radius. InputError where the tissue is too thin for markers of this size.
   Shell(const TissueView<3>& cells, MarkerSize size);
 
-  const std::vector<Vec<3>>& positions() const { return position_; }
-  std::vector<Vec<3>>& positions() { return position_; }
-  const std::vector<std::int64_t>& ids() const { return id_; }
   const std::vector<Triangle>& triangles() const { return triangle_; }
-  const MarkerSize& size() const { return size_; }
 
   /// Splits edges longer than largest_gap spacings, turns edges where other diagonals are shorter (Delaunay), and joins
   /// markers that came closer than half a spacing. Ids of markers that stay do not change and are never used again.
   void refine();
-  /// A new id for a marker that comes back to where the soil is.
-  void renew(std::size_t marker) { id_[marker] = next_id_++; }
   /// Outward unit normals.
   std::vector<Vec<3>> normals() const;
 
@@ -51,11 +45,7 @@ class Shell {
   bool turn_edges();
   bool join_close_markers();
 
-  MarkerSize size_;
-  std::vector<Vec<3>> position_;
-  std::vector<std::int64_t> id_;
   std::vector<Triangle> triangle_;
-  std::int64_t next_id_ = 0;
 };
 
 }  // namespace rootsoil

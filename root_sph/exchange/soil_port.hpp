@@ -44,8 +44,8 @@ struct SoilSnapshot {
   std::vector<std::int64_t> id;
   std::vector<Vec3> position_mm, velocity_mm_h;
   std::vector<double> radius_mm;
-  std::vector<std::int64_t> contacts;                ///< real contacts of each grain
-  std::vector<std::array<double, 6>> stress_MPa;     ///< xx yy zz yz xz xy, compression negative
+  std::vector<std::int64_t> contacts;                      ///< real contacts of each grain
+  std::vector<std::array<double, 6>> stress_MPa;           ///< xx yy zz yz xz xy, compression negative
   std::vector<Vec3> contact_position_mm, contact_force_N;  ///< force on the first of the two bodies
   std::vector<std::array<std::int64_t, 2>> contact_ids;    ///< of grains; -1: root, -2: wall, -3: obstacle
 };

@@ -11,14 +11,34 @@
 #include <string>
 #include <vector>
 
+#include "root_sph/core/enum_names.hpp"
 #include "root_sph/exchange/soil_port.hpp"
 
 namespace rootsoil {
 
+enum class SoilShape { box, plate, stone, clump, gap };
+template <>
+inline constexpr EnumName<SoilShape> enum_names<SoilShape>[] = {{SoilShape::box, "box"},
+                                                                {SoilShape::plate, "plate"},
+                                                                {SoilShape::stone, "stone"},
+                                                                {SoilShape::clump, "clump"},
+                                                                {SoilShape::gap, "gap"}};
+
+/// mixed: servo, but the wall that the root grows towards is fixed.
+enum class SoilWalls { rigid, servo, mixed };
+template <>
+inline constexpr EnumName<SoilWalls> enum_names<SoilWalls>[] = {
+    {SoilWalls::rigid, "rigid"}, {SoilWalls::servo, "servo"}, {SoilWalls::mixed, "mixed"}};
+
+enum class ContactLaw { linear, hertz_mindlin, cohesive };
+template <>
+inline constexpr EnumName<ContactLaw> enum_names<ContactLaw>[] = {
+    {ContactLaw::linear, "linear"}, {ContactLaw::hertz_mindlin, "hertz_mindlin"}, {ContactLaw::cohesive, "cohesive"}};
+
 /// A rigid body inside the soil; the root and the grains both meet it. A gap is a place without grains.
 struct SoilObstacle {
   std::string name;
-  std::string shape;          ///< "box" | "plate" | "stone" | "clump" | "gap"
+  SoilShape shape = SoilShape::box;
   Vec3 position_mm{};         ///< centre
   Vec3 half_size_mm{};        ///< box, gap: half the sides (2D: z is filled in)
   double length_mm = 0.0;     ///< plate: its side; 3D: both sides
@@ -28,18 +48,24 @@ struct SoilObstacle {
   bool movable = false;       ///< stone, clump: pushed aside like a grain
 };
 
+/// A grain that the user lists.
+struct SoilGrain {
+  Vec3 centre_mm{};
+  double radius_mm = 0.0;
+};
+
 struct SoilRecipe {
   int dimension = 2;
   // box
   Vec3 box_from_mm{}, box_to_mm{};
-  std::string walls =
-      "mixed";  ///< "rigid" | "servo" | "mixed": servo, but the wall that the root grows towards is fixed
+  SoilWalls walls = SoilWalls::mixed;
   double confining_pressure_MPa = 0.0;
   // grains
   double d_min_mm = 0.0, d_max_mm = 0.0;   ///< diameters, evenly spread in between
   double d_mean_mm = 0.0, d_spread = 0.0;  ///< instead: mean and relative half-width; after validation both are set
   std::string grains_file;                 ///< instead of packing: CSV x_mm, y_mm, z_mm, radius_mm
-  std::string contact_law = "linear";      ///< "linear" | "hertz_mindlin" | "cohesive"
+  std::vector<SoilGrain> grains;           ///< of grains_file
+  ContactLaw contact_law = ContactLaw::linear;
   double E_MPa = 0.0;
   double poisson = 0.3;        ///< linear, cohesive: tangential over normal stiffness; hertz_mindlin: Poisson's ratio
   double friction_deg = 30.0;  ///< grain on grain
@@ -67,11 +93,11 @@ struct Penetrometer {
   double diameter_mm = 0.0;
   double cone_angle_deg = 180.0;  ///< full angle of the tip; 180: round
   double rate_mm_h = 0.0;
-  double depth_mm = 0.0;         ///< at the end
-  double average_from_mm = 0.0;  ///< Q is the mean from this depth on; 0: the last millimetre
-  double friction_deg = -1.0;    ///< below 0: root_friction_deg
+  double depth_mm = 0.0;                  ///< at the end
+  std::optional<double> average_from_mm;  ///< Q is the mean from this depth on; absent: the last millimetre
+  std::optional<double> friction_deg;     ///< absent: root_friction_deg
   std::int64_t seeds = 3;
-  double interval_h = 0.0;           ///< between two readings; 0: a hundredth of the diameter's time
+  std::optional<double> interval_h;  ///< between two readings; absent: a hundredth of the diameter's time
   std::optional<double> turgor_MPa;  ///< for the paper's p = turgor - Q/4
 };
 
@@ -92,7 +118,12 @@ inline double quasi_static_density_N_h2_mm4(const SoilRecipe& recipe, double spe
   return recipe.confining_pressure_MPa * root * root;
 }
 
-/// Makes the soil that a scene calls for. Given to the run from outside, so that root_sph knows no soil engine.
+/// As the recipe gives it, or derived: infinite, or not a number, where nothing is expected to move.
+inline double expected_density_N_h2_mm4(const SoilRecipe& recipe, double speed_mm_h, double diameter_mm) {
+  return recipe.density_N_h2_mm4.value_or(quasi_static_density_N_h2_mm4(recipe, speed_mm_h, diameter_mm));
+}
+
+/// Makes the soil of a recipe: a penetrometer needs one a seed.
 using SoilPortFactory = std::function<std::unique_ptr<SoilPort>(const SoilRecipe&, const SoilStart&)>;
 
 }  // namespace rootsoil

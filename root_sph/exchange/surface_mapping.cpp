@@ -2,6 +2,7 @@
 #include "root_sph/exchange/surface_mapping.hpp"
 
 #include "root_sph/core/errors.hpp"
+#include "root_sph/core/symmetric.hpp"
 #include "root_sph/exchange/kernel_cover.hpp"
 
 namespace rootsoil {
@@ -38,16 +39,15 @@ bool append_weights(const std::vector<Candidate<Dim>>& near, std::span<const Mat
     centre += kernel_shape(c.q) * c.r;
   }
   centre /= total;
-  const Mat<Dim> scale = Eigen::LLT<Mat<Dim>>(shapes[nearest->cell]).matrixL();
+  const Mat<Dim> scale = cholesky_factor<Dim>(shapes[nearest->cell]);
   Mat<Dim> spread = Mat<Dim>::Zero();
   for (const Candidate<Dim>& c : near) {
     const Vec<Dim> y = scale.transpose() * (c.r - centre);
     spread += kernel_shape(c.q) / total * y * y.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Mat<Dim>> eigen(spread);
-  if (!(eigen.eigenvalues()[0] > smallest_spread)) return false;
-  const Mat<Dim> inverse =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  const SymmetricEigen<Dim> eigen = symmetric_eigen<Dim>(spread);
+  if (!(eigen.values[0] > smallest_spread)) return false;
+  const Mat<Dim> inverse = eigen.vectors * eigen.values.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
   const Vec<Dim> marker = scale.transpose() * -centre;
   for (const Candidate<Dim>& c : near) {
     const Vec<Dim> y = inverse * (scale.transpose() * (c.r - centre));

@@ -13,31 +13,9 @@
 #include <vector>
 
 #include "root_sph/core/types.hpp"
+#include "root_sph/exchange/spin.hpp"
 
 namespace rootsoil {
-
-/// Angular velocity, angle or torque: one number in 2D, an axial vector in 3D.
-template <int Dim>
-using Spin = Eigen::Matrix<double, Dim == 2 ? 1 : 3, 1>;
-
-template <int Dim>
-Spin<Dim> cross(const Vec<Dim>& a, const Vec<Dim>& b) {
-  if constexpr (Dim == 2) {
-    return Spin<2>(a[0] * b[1] - a[1] * b[0]);
-  } else {
-    return a.cross(b);
-  }
-}
-
-/// spin x r
-template <int Dim>
-Vec<Dim> turned(const Spin<Dim>& spin, const Vec<Dim>& r) {
-  if constexpr (Dim == 2) {
-    return spin[0] * Vec<2>(-r[1], r[0]);
-  } else {
-    return spin.cross(r);
-  }
-}
 
 template <int Dim>
 class SurfaceMapping {
@@ -67,9 +45,9 @@ class SurfaceMapping {
   /// sum phi_j v_j; v one a cell, vectors or numbers
   template <class Values>
   auto interpolate(std::size_t marker, const Values& v) const {
-    using Value = std::decay_t<decltype(v[0])>;
+    using Sum = std::decay_t<decltype(v[0])>;
     const auto all = shares(marker);
-    Value sum = all[0].weight * v[static_cast<std::size_t>(all[0].cell)];
+    Sum sum = all[0].weight * v[static_cast<std::size_t>(all[0].cell)];
     for (const Share& s : all.subspan(1)) sum += s.weight * v[static_cast<std::size_t>(s.cell)];
     return sum;
   }

@@ -15,6 +15,7 @@ namespace rootsoil {
 /// An ellipsoid.
 struct MeasuredCell {
   std::int64_t label = 0;
+  int line = 0;  ///< of the file
   Vec<3> position_mm = Vec<3>::Zero();
   Mat<3> axes = Mat<3>::Identity();      ///< a rotation; columns e1, e2, e3 = e1 x e2
   Vec<3> semi_axes_mm = Vec<3>::Ones();  ///< r1 >= r2 >= r3 > 0

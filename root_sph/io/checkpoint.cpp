@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "root_sph/core/digest.hpp"
 #include "root_sph/core/errors.hpp"
 #include "root_sph/io/files.hpp"
 #include "root_sph/io/hdf5.hpp"
@@ -20,15 +21,8 @@ constexpr std::size_t block_bytes = 512;  // the smallest that HDF5 looks behind
 constexpr std::string_view signature = "rootsoil checkpoint 1\n";
 constexpr std::string_view cells_prefix = "cells/";
 
-// FNV-1a: any single changed byte changes the result.
-std::uint64_t checksum(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
-  return hash;
-}
-
 std::string block_for(std::string_view content) {
-  std::string block = fmt::format("{}checksum {:016x}\nbytes {}\n", signature, checksum(content), content.size());
+  std::string block = fmt::format("{}checksum {:016x}\nbytes {}\n", signature, fnv1a(content), content.size());
   block.resize(block_bytes, '\0');
   return block;
 }
@@ -82,6 +76,10 @@ void refuse_extra_fields(const std::map<std::string, std::vector<T>>& columns, c
   }
 }
 
+constexpr const char* start_anew =
+    "put a whole copy of the file back if there is one, or start anew in another --out; frames and history stay "
+    "readable";
+
 }  // namespace
 
 void write_checkpoint(const fs::path& path, const Checkpoint& checkpoint) {
@@ -100,12 +98,14 @@ void write_checkpoint(const fs::path& path, const Checkpoint& checkpoint) {
 Checkpoint read_checkpoint(const fs::path& path) {
   const std::string bytes = read_whole_file(path);
   if (!bytes.starts_with(signature)) {
-    throw FileError(fmt::format("{}: not a checkpoint of this program, or damaged at its start", path.string()));
+    throw FileError(fmt::format("{}: not a checkpoint of this program, or damaged at its start", path.string()),
+                    start_anew);
   }
   const std::string_view content = std::string_view(bytes).substr(std::min(block_bytes, bytes.size()));
   if (bytes.compare(0, block_bytes, block_for(content)) != 0) {
     throw FileError(fmt::format("{}: the checkpoint is damaged (its checksum does not fit its {} bytes)", path.string(),
-                                bytes.size()));
+                                bytes.size()),
+                    start_anew);
   }
   try {
     const hdf5::Handle file = hdf5::open_image(content);
@@ -118,7 +118,8 @@ Checkpoint read_checkpoint(const fs::path& path) {
     read_values(hdf5::open_group(file, "/"), "", checkpoint);
     return checkpoint;
   } catch (const FileError& error) {
-    throw FileError(fmt::format("{}: not a checkpoint of this version: {}", path.string(), error.what()));
+    throw FileError(fmt::format("{}: not a checkpoint of this version: {}", path.string(), error.problem()),
+                    start_anew);
   }
 }
 

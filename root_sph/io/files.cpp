@@ -11,7 +11,6 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <utility>
 
 #include "root_sph/core/errors.hpp"
 #include "root_sph/io/series.hpp"
@@ -36,7 +35,7 @@ class Descriptor {
 };
 
 [[noreturn]] void fail(const fs::path& path, int error) {
-  throw FileError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
+  throw FileError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)), file_remedy(error));
 }
 
 bool write_all(int fd, std::string_view content) {
@@ -118,8 +117,8 @@ void write_text_atomically(const fs::path& path, std::string_view content) {
 std::string read_whole_file(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file || fs::is_directory(path)) {
-    throw FileError(
-        fmt::format("{}: cannot be read: {}", path.string(), file ? "it is a folder" : std::strerror(errno)));
+    const int error = file ? EISDIR : errno;
+    throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(error)), file_remedy(error));
   }
   return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -143,11 +142,14 @@ RunFolder claim_run_folder(const fs::path& path, bool resume) {
   std::error_code trouble;
   fs::create_directories(path, trouble);
   if (trouble) {
-    throw FileError(fmt::format("{}: the run's folder cannot be created: {}", path.string(), trouble.message()));
+    throw FileError(fmt::format("{}: the run's folder cannot be created: {}", path.string(), trouble.message()),
+                    file_remedy(trouble.value()));
   }
   Descriptor lock(path / ".lock", O_RDWR | O_CREAT);
   if (lock.get() < 0) {
-    throw FileError(fmt::format("{}: the run's folder cannot be written: {}", path.string(), std::strerror(errno)));
+    const int error = errno;
+    throw FileError(fmt::format("{}: the run's folder cannot be written: {}", path.string(), std::strerror(error)),
+                    file_remedy(error));
   }
   if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) fail(path / ".lock", errno);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cells (and other points) at one time, as named columns ready to be written.
+// Cells, and tables beside them, at one time: named columns ready to be written.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,18 @@ struct FrameColumn {
   std::variant<std::vector<double>, std::vector<std::int64_t>> values;  ///< cell by cell, cells * components
 };
 
-/// Points beside the cells, as surface markers or grains; one of the columns is "position".
-struct PointSet {
+/// A table beside the cells: points, as surface markers or grains, with a column "position"; or, without one, a profile
+/// along the root.
+struct FrameTable {
   std::string name;
-  std::vector<FrameColumn> columns;  ///< all with the same number of points
+  std::vector<FrameColumn> columns;  ///< all with the same number of rows
 };
 
 struct Frame {
   double time_h = 0.0;
   std::int64_t step = 0;
   std::vector<FrameColumn> columns;  ///< all with the same number of cells
-  std::vector<PointSet> points;
+  std::vector<FrameTable> tables = {};
 };
 
 }  // namespace rootsoil

@@ -136,8 +136,14 @@ Handle open_image(std::string_view bytes) {
 Handle open_for_reading(const std::filesystem::path& path) {
   silence();
   std::error_code trouble;
-  if (!std::filesystem::exists(path, trouble)) throw FileError(fmt::format("{}: there is no such file", path.string()));
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, fmt::format("open {}", path.string())};
+  if (!std::filesystem::exists(path, trouble)) {
+    throw FileError(fmt::format("{}: there is no such file", path.string()), file_remedy(ENOENT));
+  }
+  try {
+    return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, fmt::format("open {}", path.string())};
+  } catch (const FileError& error) {
+    throw FileError(error.problem(), whole_copy);
+  }
 }
 
 Handle create_group(hid_t parent, const std::string& name) {

@@ -44,6 +44,9 @@ std::string image(const Handle& file);
 Handle open_to_extend(const std::filesystem::path& path);
 void flush(const Handle& file);
 Handle open_image(std::string_view bytes);
+/// What to do about a damaged file.
+inline constexpr const char* whole_copy =
+    "put a whole copy of the file back; a run that goes on by --resume without the file begins a new one";
 Handle open_for_reading(const std::filesystem::path& path);
 
 Handle create_group(hid_t parent, const std::string& name);

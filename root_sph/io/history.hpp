@@ -2,7 +2,6 @@
 // history.csv: a row of numbers per output time, on the disk as soon as append() returns.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -21,7 +20,8 @@ class HistoryWriter {
   HistoryWriter& operator=(const HistoryWriter&) = delete;
   ~HistoryWriter();
 
-  /// One number per column, written with as many digits as reading it back exactly takes.
+  /// One number per column, written with as many digits as reading it back exactly takes. What is not a number (not
+  /// known yet, or of no cell) is left empty.
   void append(std::span<const double> values);
 
  private:

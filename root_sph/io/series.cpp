@@ -42,8 +42,8 @@ std::vector<ColumnInfo> describe(const std::vector<FrameColumn>& columns) {
 
 FrameInfo describe(const Frame& frame) {
   FrameInfo info{frame.time_h, frame.step, rows_of(frame.columns), describe(frame.columns), {}};
-  for (const PointSet& set : frame.points) {
-    info.points.push_back({set.name, rows_of(set.columns), describe(set.columns)});
+  for (const FrameTable& table : frame.tables) {
+    info.tables.push_back({table.name, rows_of(table.columns), describe(table.columns)});
   }
   return info;
 }
@@ -66,10 +66,10 @@ std::string frame_image(const Frame& frame) {
   hdf5::write_attribute(file, "step", frame.step);
   hdf5::write_attribute(file, "cells", rows_of(frame.columns));
   write_columns(file, frame.columns);
-  for (const PointSet& set : frame.points) {
-    const hdf5::Handle group = hdf5::create_group(file, set.name);
-    hdf5::write_attribute(group, "count", rows_of(set.columns));
-    write_columns(group, set.columns);
+  for (const FrameTable& table : frame.tables) {
+    const hdf5::Handle group = hdf5::create_group(file, table.name);
+    hdf5::write_attribute(group, "count", rows_of(table.columns));
+    write_columns(group, table.columns);
   }
   return hdf5::image(file);
 }
@@ -94,8 +94,8 @@ ColumnInfo read_column_info(hid_t group, const std::string& name, std::int64_t r
           shape.components, shape.is_integer};
 }
 
-PointInfo read_point_info(hid_t group, const std::string& name) {
-  PointInfo info{name, hdf5::read_integer_attribute(group, "count"), {}};
+TableInfo read_table_info(hid_t group, const std::string& name) {
+  TableInfo info{name, hdf5::read_integer_attribute(group, "count"), {}};
   for (const std::string& column : hdf5::member_names(group)) {
     info.columns.push_back(read_column_info(group, column, info.count));
   }
@@ -110,7 +110,7 @@ FrameInfo read_info(hid_t group) {
                  {}};
   for (const std::string& name : hdf5::member_names(group)) {
     if (hdf5::is_group(group, name)) {
-      info.points.push_back(read_point_info(hdf5::open_group(group, name), name));
+      info.tables.push_back(read_table_info(hdf5::open_group(group, name), name));
     } else {
       info.columns.push_back(read_column_info(group, name, info.cells));
     }
@@ -120,6 +120,7 @@ FrameInfo read_info(hid_t group) {
 
 std::vector<FrameColumn> read_columns(hid_t group, const std::vector<ColumnInfo>& infos) {
   std::vector<FrameColumn> columns;
+  columns.reserve(infos.size());
   for (const ColumnInfo& c : infos) {
     columns.push_back({c.name, c.unit, c.meaning, c.components, hdf5::read_values(hdf5::open_dataset(group, c.name))});
   }
@@ -133,17 +134,24 @@ auto reading(const fs::path& run_h5, Read read) {
   try {
     return read(file);
   } catch (const FileError& error) {
-    throw FileError(fmt::format("{}: damaged, or not a series of frames: {}", run_h5.string(), error.what()));
+    throw FileError(fmt::format("{}: damaged, or not a series of frames: {}", run_h5.string(), error.problem()),
+                    hdf5::whole_copy);
   }
 }
 
 }  // namespace
 
+bool TableInfo::has_positions() const {
+  return std::any_of(columns.begin(), columns.end(), [](const ColumnInfo& c) { return c.name == "position"; });
+}
+
 std::int64_t most_points(const std::vector<FrameInfo>& frames) {
   std::int64_t most = 0;
   for (const FrameInfo& frame : frames) {
     most = std::max(most, frame.cells);
-    for (const PointInfo& set : frame.points) most = std::max(most, set.count);
+    for (const TableInfo& table : frame.tables) {
+      if (table.has_positions()) most = std::max(most, table.count);
+    }
   }
   return most;
 }
@@ -154,7 +162,9 @@ SeriesWriter::SeriesWriter(fs::path folder, SeriesMetadata metadata, std::option
     : folder_(std::move(folder)), metadata_(std::move(metadata)) {
   std::error_code trouble;
   fs::create_directories(folder_ / "frames", trouble);
-  if (trouble) fail(trouble.message());
+  if (trouble) {
+    fail(fmt::format("{}: {}", (folder_ / "frames").string(), trouble.message()), file_remedy(trouble.value()));
+  }
   if (continue_from_h && fs::exists(folder_ / "run.h5")) take_over(*continue_from_h);
   write_index();
   // what the index does not name was never reported as written, or is no longer wanted
@@ -169,10 +179,11 @@ fs::path SeriesWriter::frame_file(std::size_t index) const {
   return folder_ / "frames" / fmt::format("frame_{:06}.h5", index);
 }
 
-void SeriesWriter::fail(const std::string& reason) const {
+void SeriesWriter::fail(const std::string& reason, const std::string& remedy) const {
   throw FileError(fmt::format("{}\n  kept:    {} frames{} in {}", reason, frames_.size(),
                               frames_.empty() ? "" : fmt::format(" up to {} h", frames_.back().time_h),
-                              (folder_ / "run.h5").string()));
+                              (folder_ / "run.h5").string()),
+                  remedy);
 }
 
 void SeriesWriter::take_over(double last_time_h) {
@@ -206,7 +217,7 @@ void SeriesWriter::write(const Frame& frame) {
     write_index();
   } catch (const FileError& error) {
     if (!frames_.empty() && frames_.back().time_h == frame.time_h) frames_.pop_back();
-    fail(error.what());
+    fail(error.problem(), error.remedy());
   }
 }
 
@@ -229,9 +240,12 @@ void SeriesWriter::pack() const {
 void SeriesWriter::finish() {
   try {
     pack();
-  } catch (const std::runtime_error& error) {  // FileError, or a frame's file has gone
+  } catch (const FileError& error) {
     discard_temporary(folder_ / "run.h5");
-    fail(error.what());
+    fail(error.problem(), error.remedy());
+  } catch (const std::runtime_error& error) {
+    discard_temporary(folder_ / "run.h5");
+    fail(error.what(), "has a frame's file gone? The run's other files are whole");
   }
   std::error_code trouble;  // frames that stay behind do no harm
   fs::remove_all(folder_ / "frames", trouble);
@@ -260,8 +274,8 @@ Frame read_frame(const fs::path& run_h5, std::size_t index) {
     const hdf5::Handle group = hdf5::open_group(file, frame_group(index));
     const FrameInfo info = read_info(group);
     Frame frame{info.time_h, info.step, read_columns(group, info.columns), {}};
-    for (const PointInfo& set : info.points) {
-      frame.points.push_back({set.name, read_columns(hdf5::open_group(group, set.name), set.columns)});
+    for (const TableInfo& table : info.tables) {
+      frame.tables.push_back({table.name, read_columns(hdf5::open_group(group, table.name), table.columns)});
     }
     return frame;
   });

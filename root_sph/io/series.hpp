@@ -4,7 +4,8 @@
 // While a run goes on, every frame is a file of its own (frames/frame_000012.h5) that is never touched again, and
 // run.h5 is a small table of external links to them that is replaced as a whole: no instant exists at which a
 // frame that was reported as written can be damaged. finish() makes one self-contained run.h5 of it. Readers see
-// the same groups, /frames/000012/<column>, in both states. Points beside the cells are in /frames/000012/<set>/<column>.
+// the same groups, /frames/000012/<column>, in both states. Tables beside the cells are in
+// /frames/000012/<table>/<column>.
 #pragma once
 
 #include <cstddef>
@@ -30,13 +31,15 @@ struct ColumnInfo {
   bool operator==(const ColumnInfo&) const = default;
 };
 
-/// Points beside the cells.
-struct PointInfo {
+/// A table beside the cells.
+struct TableInfo {
   std::string name;
-  std::int64_t count = 0;
+  std::int64_t count = 0;  ///< of rows
   std::vector<ColumnInfo> columns;
 
-  bool operator==(const PointInfo&) const = default;
+  /// Whether its rows are points in space.
+  bool has_positions() const;
+  bool operator==(const TableInfo&) const = default;
 };
 
 struct FrameInfo {
@@ -44,7 +47,7 @@ struct FrameInfo {
   std::int64_t step = 0;
   std::int64_t cells = 0;
   std::vector<ColumnInfo> columns;
-  std::vector<PointInfo> points;
+  std::vector<TableInfo> tables;
 
   bool operator==(const FrameInfo&) const = default;
 };
@@ -72,7 +75,7 @@ class SeriesWriter {
   void write_index() const;
   void pack() const;
   void take_over(double last_time_h);
-  [[noreturn]] void fail(const std::string& reason) const;
+  [[noreturn]] void fail(const std::string& reason, const std::string& remedy) const;
 
   std::filesystem::path folder_;
   SeriesMetadata metadata_;
@@ -84,10 +87,11 @@ SeriesMetadata read_metadata(const std::filesystem::path& run_h5);
 std::vector<FrameInfo> list_frames(const std::filesystem::path& run_h5);
 Frame read_frame(const std::filesystem::path& run_h5, std::size_t index);
 
-/// The text of run.xmf: temporal collections of points (cells, and every set beside them) whose values lie in run.h5.
+/// The text of run.xmf: temporal collections of points (cells, and every table of points beside them) whose
+/// values lie in run.h5.
 std::string xdmf_text(const std::vector<FrameInfo>& frames);
 
-/// The largest number of cells, or of points of a set, in any frame.
+/// The largest number of cells, or of points of a table, in any frame.
 std::int64_t most_points(const std::vector<FrameInfo>& frames);
 
 /// "/frames/000012"

@@ -51,7 +51,8 @@ void add_grid(const std::string& name, double time_h, std::int64_t count, std::i
 }
 
 std::string collection(const std::string& name, const std::string& grids) {
-  return fmt::format("<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n{}</Grid>\n", name, grids);
+  return fmt::format("<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n{}</Grid>\n", name,
+                     grids);
 }
 
 }  // namespace
@@ -59,17 +60,18 @@ std::string collection(const std::string& name, const std::string& grids) {
 std::string xdmf_text(const std::vector<FrameInfo>& frames) {
   const std::int64_t most = most_points(frames);
   std::string cells;
-  std::map<std::string, std::string> sets;
+  std::map<std::string, std::string> tables;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FrameInfo& frame = frames[i];
     add_grid("cells", frame.time_h, frame.cells, most, frame.columns, frame_group(i), cells);
-    for (const PointInfo& set : frame.points) {
-      if (set.count == 0) continue;  // ParaView does not read a grid of nothing
-      add_grid(set.name, frame.time_h, set.count, most, set.columns, frame_group(i) + "/" + set.name, sets[set.name]);
+    for (const TableInfo& table : frame.tables) {
+      if (table.count == 0 || !table.has_positions()) continue;  // ParaView does not read a grid of nothing
+      add_grid(table.name, frame.time_h, table.count, most, table.columns, frame_group(i) + "/" + table.name,
+               tables[table.name]);
     }
   }
   std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n" + collection("cells", cells);
-  for (const auto& [name, grids] : sets) text += collection(name, grids);
+  for (const auto& [name, grids] : tables) text += collection(name, grids);
   return text + "</Domain>\n</Xdmf>\n";
 }
 

@@ -6,10 +6,9 @@
 // Source: Wendland 1995; the metric form is that of adaptive SPH (Owen et al. 1998).
 #pragma once
 
-#include "root_sph/core/types.hpp"
-
-#include <cmath>
 #include <numbers>
+
+#include "root_sph/core/types.hpp"
 
 namespace rootsoil {
 

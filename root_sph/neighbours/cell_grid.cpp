@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/neighbours/cell_grid.hpp"
 
-#include "root_sph/kernels/wendland.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "root_sph/kernels/wendland.hpp"
 
 namespace rootsoil {
 

@@ -2,12 +2,11 @@
 // A regular grid over a cloud of points; bins are as wide as a part of the typical reach of a kernel.
 #pragma once
 
-#include "root_sph/core/types.hpp"
-
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
+
+#include "root_sph/core/types.hpp"
 
 namespace rootsoil {
 

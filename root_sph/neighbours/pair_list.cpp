@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/neighbours/pair_list.hpp"
 
-#include "root_sph/kernels/wendland.hpp"
-#include "root_sph/neighbours/cell_grid.hpp"
-
 #include <algorithm>
 #include <numeric>
+
+#include "root_sph/kernels/wendland.hpp"
+#include "root_sph/neighbours/cell_grid.hpp"
 
 namespace rootsoil {
 namespace {
@@ -50,7 +50,8 @@ std::vector<PairBlock> make_blocks(const PairList& list, std::int64_t cells) {
   std::int64_t must_reach = 0;
   while (first < cells) {
     const std::int64_t last = std::min(cells, std::max(must_reach, first + smallest_block));
-    blocks.push_back({first, last, list.row[static_cast<std::size_t>(first)], list.row[static_cast<std::size_t>(last)]});
+    blocks.push_back(
+        {first, last, list.row[static_cast<std::size_t>(first)], list.row[static_cast<std::size_t>(last)]});
     must_reach = last;
     for (std::int64_t k = blocks.back().first_pair; k < blocks.back().last_pair; ++k) {
       must_reach = std::max<std::int64_t>(must_reach, list.pairs[static_cast<std::size_t>(k)].j + 1);

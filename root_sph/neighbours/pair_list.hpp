@@ -7,11 +7,11 @@
 // order whatever the number of threads: results are bit-identical.
 #pragma once
 
-#include "root_sph/core/types.hpp"
-
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "root_sph/core/types.hpp"
 
 namespace rootsoil {
 

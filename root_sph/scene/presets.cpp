@@ -1,56 +1,67 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/scene/presets.hpp"
 
+#include <cmath>
+
 #include "root_sph/core/errors.hpp"
 
 namespace rootsoil {
 namespace {
 
 struct Preset {
-  const char* name;
+  Accuracy accuracy;
   double eta;
   int window_steps;
-  const char* gradient;
+  GradientMode gradient;
   StepRule step;
-  PresetRecord measured;  // in docs/accuracy_cost.csv; tests/tools/test_accuracy_cost.py compares
+  double force_tolerance;
+  PresetRecord measured;  // tests/tools/test_accuracy_cost.py and tests/cli/test_errors.py compare
 };
 
 // Presets differ in the step: shorter windows, another eta and the quadratic gradient everywhere gain little in growth
 // for their time, and lose in bending or under pressure (docs/accuracy_cost.md). At 0.04 cells a step the tip of the 50
 // h main job leaves its axis (docs/decisions/0003): 0.7 um at 50 h, growing as exp(0.13 t).
+// clang-format off
+constexpr auto edges_quadratic = GradientMode::quadratic_at_surface;
 constexpr Preset presets[] = {
-    {"fast", 1.5, 20, "quadratic_at_surface", {0.02, 1e-3}, {0.0075, 0.0019, 0.46}},
-    {"balanced", 1.5, 20, "quadratic_at_surface", {0.01, 1e-3}, {0.0072, 0.00013, 0.75}},
-    {"reference", 1.5, 20, "quadratic_at_surface", {0.005, 1e-3}, {0.0072, 0.00031, 1.48}},
+    // accuracy            eta  window  gradient         step                            tolerance  measured
+    {Accuracy::fast,       1.5, 20,     edges_quadratic, {0.08, 1.0, 0.02, 1e-3, 1.5},   1e-3,      {0.0075, 0.0108, 0.0019, 0.46}},
+    {Accuracy::balanced,   1.5, 20,     edges_quadratic, {0.04, 0.5, 0.01, 1e-3, 1.0},   1e-4,      {0.0072, 0.0096, 0.00013, 0.75}},
+    {Accuracy::reference,  1.5, 20,     edges_quadratic, {0.02, 0.25, 0.005, 1e-3, 0.5}, 1e-5,      {0.0072, 0.0076, 0.00031, 1.48}},
 };
+// clang-format on
 
-const Preset& find_preset(std::string_view accuracy) {
+const Preset& find_preset(Accuracy accuracy) {
   for (const Preset& p : presets) {
-    if (accuracy == p.name) return p;
+    if (accuracy == p.accuracy) return p;
   }
   assertion_failed("there is such a preset", __FILE__, __LINE__);
 }
 
 }  // namespace
 
-std::vector<std::string> preset_names() {
-  std::vector<std::string> names;
-  for (const Preset& p : presets) names.emplace_back(p.name);
-  return names;
-}
-
-NumericsSection preset(std::string_view accuracy) {
+NumericsSection preset(Accuracy accuracy) {
   const Preset& p = find_preset(accuracy);
   NumericsSection numerics;
-  numerics.accuracy = p.name;
+  numerics.accuracy = accuracy;
   numerics.eta = p.eta;
   numerics.window_steps = p.window_steps;
   numerics.gradient = p.gradient;
+  numerics.force_tolerance = p.force_tolerance;
   return numerics;
 }
 
-StepRule step_rule(std::string_view accuracy) { return find_preset(accuracy).step; }
+StepRule step_rule(Accuracy accuracy) { return find_preset(accuracy).step; }
 
-PresetRecord preset_record(std::string_view accuracy) { return find_preset(accuracy).measured; }
+PresetRecord preset_record(Accuracy accuracy) { return find_preset(accuracy).measured; }
+
+double discretisation_error(const NumericsSection& numerics, double cells_across) {
+  // docs/accuracy_cost.csv, growth and division with the default's numerics, 4 to 16 cells across: within a tenth of
+  // this order (tests/tools/test_accuracy_cost.py). Below 4 and beyond 16 nothing was measured.
+  constexpr double measured_across = 8.0, order = 1.4;
+  const PresetRecord record = preset_record(numerics.accuracy);
+  return (numerics.has_inertia() ? record.discretisation_error : record.error_in_balance) *
+         std::pow(measured_across / cells_across, order);
+}
 
 }  // namespace rootsoil

@@ -13,9 +13,8 @@
 #include <utility>
 
 #include "root_sph/core/errors.hpp"
-#include "root_sph/scene/presets.hpp"
-#include "root_sph/scene/schema.hpp"
-#include "root_sph/scene/validate.hpp"
+#include "root_sph/scene/response.hpp"
+#include "root_sph/scene/schema_keys.hpp"
 
 namespace rootsoil {
 namespace {
@@ -30,7 +29,7 @@ std::string text_of(const toml::node& node) {
   std::ostringstream out;
   node.visit([&](const auto& n) { out << n; });
   std::string text = out.str();
-  if (text.size() > longest) text = text.substr(0, longest) + "...";
+  if (text.size() > longest) text.replace(longest, std::string::npos, "...");
   return text;
 }
 
@@ -104,29 +103,35 @@ void apply_override(toml::table& scene, std::string_view text, const std::string
 
 class Reader {
  public:
-  Reader(const toml::table& table, std::string file) : table_(table), file_(std::move(file)) {
+  Reader(const Language& language, const toml::table& table, std::string file)
+      : language_(language), table_(table), file_(std::move(file)) {
     scene_.file = file_;
-    scene_.numerics = preset(scene_.numerics.accuracy);
-    origins_.add("", {file_, 0});
-  }
-
-  Scene read() {
-    check_names(table_, {}, {});
-    for (const SectionSpec& section : schema()) read_section(section);
-    check_response_duplicates();
-    validate_and_complete(scene_, origins_);
-    scene_.origins = std::move(origins_);
-    return std::move(scene_);
-  }
-
-  /// Sections of the root are left alone.
-  Scene read_soil() {
-    check_names(table_, {}, {});
-    if (table_.contains("scene")) read_keys(*find_section("scene"), 0, *table_.get_as<toml::table>("scene"), false);
-    for (const SectionSpec& section : schema()) {
-      if (section.name.starts_with("soil") || section.name == "penetrometer") read_section(section);
+    scene_.origins.add("", {file_, 0});
+    for (const SectionSpec& section : language_.sections()) {
+      for (const KeySpec& key : section.keys) {
+        if (key.stands_for) key.stands_for(scene_);
+      }
     }
-    validate_and_complete_soil(scene_, origins_);
+  }
+
+  /// \param soil_alone only what means something without a root; the other sections are left alone
+  Scene read(bool soil_alone) {
+    scene_.has_root = !soil_alone;
+    check_names(table_, {}, {});
+    if (!soil_alone) refuse_soil_alone();
+    for (const SectionSpec& section : language_.sections()) {
+      if (!soil_alone || section.without_root) {
+        read_section(section);
+      } else if (section.name == "scene" && table_.contains("scene")) {
+        read_keys(section, 0, *table_.get_as<toml::table>("scene"), false);
+      }
+    }
+    if (!soil_alone) check_response_duplicates();
+    for (const SectionSpec& section : language_.sections()) {
+      const bool always = section.name == "scene";
+      if (section.complete && (always || ((!soil_alone || section.without_root) && section.count(scene_) > 0)))
+        section.complete(scene_);
+    }
     return std::move(scene_);
   }
 
@@ -146,11 +151,11 @@ class Reader {
   /// Finds every name that does not belong, before anything is read: a misspelt key is then called
   /// misspelt, and not missing.
   void check_names(const toml::table& table, const std::string& name, const std::string& path) const {
-    const SectionSpec* section = find_section(name);
+    const SectionSpec* section = language_.find(name);
     for (const auto& [key, node] : table) {
       const std::string inner_name = join_path(name, key.str());
       const std::string inner_path = join_path(path, key.str());
-      if (const SectionSpec* inner = find_section(inner_name)) {
+      if (const SectionSpec* inner = language_.find(inner_name)) {
         check_section(*inner, node, inner_path);
       } else if (!section || !section->find(key.str())) {
         fail_unknown(node, section, name, inner_path, std::string(key.str()));
@@ -183,7 +188,7 @@ class Reader {
       for (const KeySpec& k : section->keys) known.push_back(k.name);
     }
     const std::string prefix = name.empty() ? "" : name + ".";
-    for (const SectionSpec& s : schema()) {
+    for (const SectionSpec& s : language_.sections()) {
       // a key that is right but in the wrong section
       if (s.find(key)) {
         fail(node, path, "unknown key", {}, {}, fmt::format("{} is a key of [{}]: move it there", key, s.name));
@@ -197,18 +202,28 @@ class Reader {
                      section ? " " + section->name : ""));
   }
 
+  /// A file for rootsoil penetrometer lacks much of what a scene needs, but nothing is wrong with it.
+  void refuse_soil_alone() const {
+    const auto is_there = [&](const SectionSpec& s) { return s.without_root && table_.at_path(s.name).node(); };
+    if (table_.contains("root") || std::none_of(language_.sections().begin(), language_.sections().end(), is_there)) {
+      return;
+    }
+    scene_.origins.fail("", "section [root] is missing: the file describes a soil alone", {}, {},
+                        "rootsoil penetrometer takes such a file; for a run add [root] and what it needs");
+  }
+
   void read_section(const SectionSpec& section) {
     const toml::node* node = table_.at_path(section.name).node();
     const toml::array* list = section.kind == SectionKind::repeated && node ? node->as_array() : nullptr;
     const std::size_t count = list ? list->size() : node ? 1 : 0;
     if (count == 0 && section.kind == SectionKind::required) {
-      origins_.fail("", fmt::format("section [{}] is missing", section.name), {}, {},
-                    fmt::format("add it; rootsoil describe {} lists its keys", section.name));
+      scene_.origins.fail("", fmt::format("section [{}] is missing", section.name), {}, {},
+                          fmt::format("add it; rootsoil describe {} lists its keys", section.name));
     }
     for (std::size_t i = 0; i < count; ++i) {
       section.add(scene_);
       const toml::table& table = *(list ? (*list)[i] : *node).as_table();
-      origins_.add(key_path(section, i), location(table));
+      scene_.origins.add(key_path(section, i), location(table));
       read_keys(section, i, table);
     }
   }
@@ -219,11 +234,12 @@ class Reader {
       if (!node) return;
       const std::string path = key_path(section, index, key.name);
       key.set(scene_, index, read_value(*node, key, path));
-      origins_.add(path, location(*node));
+      scene_.origins.add(path, location(*node));
     };
-    if (section.name == "numerics") {
-      read_key(*section.find("accuracy"));
-      scene_.numerics = preset(scene_.numerics.accuracy);
+    for (const KeySpec& key : section.keys) {
+      if (!key.stands_for) continue;
+      read_key(key);
+      key.stands_for(scene_);
     }
     for (const KeySpec& key : section.keys) read_key(key);
     if (!complete) return;
@@ -232,42 +248,43 @@ class Reader {
 
   void check_presence(const SectionSpec& section, const KeySpec& key, std::size_t index) const {
     const std::string path = key_path(section, index, key.name);
-    const bool given = origins_.has(path);
-    if (given && !applies(section, key, scene_, index)) {
+    const bool given = scene_.origins.has(path);
+    if (given && !language_.applies(section, key, scene_, index)) {
       const Condition& c = *key.condition;
       const std::string other = key_path(section, index, c.key);
       if (c.absent)
-        origins_.fail(path, fmt::format("{} and {} exclude each other", key.name, c.key), {}, {}, "give one of them");
-      origins_.fail(path, "this key means nothing here", {},
-                    c.values.empty() ? fmt::format("only together with {}", c.key)
-                                     : fmt::format("only where {} is {}", c.key, fmt::join(c.values, " or ")),
-                    fmt::format("remove it, or change {}", other));
+        scene_.origins.fail(path, fmt::format("{} and {} exclude each other", key.name, c.key), {}, {},
+                            "give one of them");
+      scene_.origins.fail(path, "this key means nothing here", {},
+                          c.values.empty() ? fmt::format("only together with {}", c.key)
+                                           : fmt::format("only where {} is {}", c.key, fmt::join(c.values, " or ")),
+                          fmt::format("remove it, or change {}", other));
     }
-    if (!given && key.required && key.response_section.empty() && applies(section, key, scene_, index))
-      fail_missing(path, key);
+    if (!given && key.required && !key.responds && language_.applies(section, key, scene_, index))
+      fail_missing(section, path, key);
   }
 
-  [[noreturn]] void fail_missing(const std::string& path, const KeySpec& key) const {
+  [[noreturn]] void fail_missing(const SectionSpec& section, const std::string& path, const KeySpec& key) const {
     const std::string or_response =
-        key.response_section.empty() ? "" : fmt::format(", here or as a pair in [{}]", key.response_section);
-    origins_.fail(path, "this key is missing", {}, allowed_text(key, scene_.scene.dimension),
-                  fmt::format("give it{}: {}", or_response, key.meaning));
+        key.responds ? fmt::format(", here or as a pair in [{}]", response_section_name(section.name)) : "";
+    scene_.origins.fail(path, "this key is missing", {}, allowed_text(key, scene_.scene.dimension),
+                        fmt::format("give it{}: {}", or_response, key.meaning));
   }
 
   /// Can only be told when [response.*], which comes last, has been read.
   void check_response_duplicates() const {
-    for (const SectionSpec& section : schema()) {
+    for (const SectionSpec& section : language_.sections()) {
       if (section.count(scene_) == 0) continue;
       for (const KeySpec& key : section.keys) {
-        if (key.response_section.empty()) continue;
+        if (!key.responds) continue;
         const std::string path = key_path(section, 0, key.name);
-        const bool given = origins_.has(path);
-        const bool supplied = supplied_by_response(key, scene_);
-        if (!given && !supplied) fail_missing(path, key);
+        const bool given = scene_.origins.has(path);
+        const bool supplied = language_.supplied_by_response(section, key, scene_);
+        if (!given && !supplied && key.required) fail_missing(section, path, key);
         if (given && supplied) {
-          origins_.fail(fmt::format("{}.{}", key.response_section, key.name),
-                        fmt::format("{} is given in [{}] too", key.name, section.name), {}, {},
-                        "give it in one of the two");
+          scene_.origins.fail(fmt::format("{}.{}", response_section_name(section.name), key.name),
+                              fmt::format("{} is given in [{}] too", key.name, section.name), {}, {},
+                              "give it in one of the two");
         }
       }
     }
@@ -287,6 +304,10 @@ class Reader {
       if (!std::isfinite(value)) wrong(n, "this is not a finite number");
       if (!key.limits.contains(value)) {
         wrong(n, "the value is outside its range", value >= key.limits.high ? key.limits.above_remedy : "");
+      }
+      constexpr double smallest = 1e-300;  // below, a number loses digits, and its inverse may be infinite
+      if (key.limits.low == 0 && key.limits.low_open && value < smallest) {
+        wrong(n, "the value is too small to compute with", fmt::format("give at least {}", smallest));
       }
       return value;
     };
@@ -340,6 +361,11 @@ class Reader {
           const toml::array& row = list(n, 2, "this is not a [time, value] pair");
           const double time = number(row[0]);
           if (!std::isfinite(time)) wrong(row[0], "this is not a finite number");
+          constexpr double farthest_h = 1e6;  // a hundred times the longest run
+          if (std::abs(time) > farthest_h) {
+            fail(row[0], path, "the time is outside its range", text_of(row[0]),
+                 fmt::format("times from -{0:.0e} to {0:.0e} h", farthest_h), sections::seconds);
+          }
           rows.push_back({time, in_range(row[1], number(row[1]))});
         }
         if (rows.empty()) wrong(node, "the list is empty");
@@ -350,10 +376,10 @@ class Reader {
     return {};
   }
 
+  const Language& language_;
   const toml::table& table_;
   std::string file_;
   Scene scene_;
-  Origins origins_;
 };
 
 }  // namespace
@@ -391,31 +417,23 @@ std::string text_of_file(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   if (stream) text << stream.rdbuf();
-  if (!stream || stream.bad()) throw FileError(fmt::format("{}: cannot be read; check its permissions", path.string()));
+  if (!stream || stream.bad()) {
+    throw FileError(fmt::format("{}: cannot be read", path.string()), "check its permissions");
+  }
   return text.str();
 }
 
 }  // namespace
 
-Scene parse_scene(std::string_view text, std::string file_name, const std::vector<std::string>& set_overrides,
-                  const std::optional<std::string>& accuracy) {
-  toml::table table = parse_table(text, file_name, set_overrides);
-  if (accuracy) apply_override(table, "numerics.accuracy=" + toml_text(Value(*accuracy)), "from --accuracy");
-  return Reader(table, std::move(file_name)).read();
+Scene parse_scene(const Language& language, std::string_view text, std::string file_name, const ReadOptions& options) {
+  toml::table table = parse_table(text, file_name, options.overrides);
+  if (options.accuracy)
+    apply_override(table, "numerics.accuracy=" + toml_text(Value(*options.accuracy)), "from --accuracy");
+  return Reader(language, table, std::move(file_name)).read(options.soil_alone);
 }
 
-Scene parse_soil(std::string_view text, std::string file_name, const std::vector<std::string>& set_overrides) {
-  const toml::table table = parse_table(text, file_name, set_overrides);
-  return Reader(table, std::move(file_name)).read_soil();
-}
-
-Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& set_overrides,
-                 const std::optional<std::string>& accuracy) {
-  return parse_scene(text_of_file(path), path.string(), set_overrides, accuracy);
-}
-
-Scene read_soil(const std::filesystem::path& path, const std::vector<std::string>& set_overrides) {
-  return parse_soil(text_of_file(path), path.string(), set_overrides);
+Scene read_scene(const Language& language, const std::filesystem::path& path, const ReadOptions& options) {
+  return parse_scene(language, text_of_file(path), path.string(), options);
 }
 
 }  // namespace rootsoil

@@ -8,22 +8,24 @@
 #include <string_view>
 #include <vector>
 
-#include "root_sph/scene/scene.hpp"
+#include "root_sph/scene/schema.hpp"
 
 namespace rootsoil {
 
-/// Overrides are "section.key=value" with the value in TOML (bare words are taken as text); elements of
-/// repeated sections are counted from 1: "obstacle.1.radius_mm=0.2". `accuracy` overrides [numerics].
-Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& set_overrides = {},
-                 const std::optional<std::string>& accuracy = std::nullopt);
+struct ReadOptions {
+  /// "section.key=value" with the value in TOML (bare words are taken as text); elements of repeated sections are
+  /// counted from 1: "obstacle.1.radius_mm=0.2".
+  std::vector<std::string> overrides = {};
+  std::optional<std::string> accuracy = {};  ///< in the place of [numerics] accuracy
+  /// Only sections that mean something without a root, and the dimension and seed of [scene]; others are left alone, as
+  /// long as their names and keys exist.
+  bool soil_alone = false;
+};
 
-/// The same from text. `file_name` is for messages, and its folder the one that cells_file starts from.
-Scene parse_scene(std::string_view text, std::string file_name, const std::vector<std::string>& set_overrides = {},
-                  const std::optional<std::string>& accuracy = std::nullopt);
+Scene read_scene(const Language& language, const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Only [soil], [penetrometer] and the dimension and seed of [scene]; other sections are left alone, as long as their
-/// names and keys exist.
-Scene read_soil(const std::filesystem::path& path, const std::vector<std::string>& set_overrides = {});
-Scene parse_soil(std::string_view text, std::string file_name, const std::vector<std::string>& set_overrides = {});
+/// The same from text. `file_name` is for messages, and its folder the one that files in it are relative to.
+Scene parse_scene(const Language& language, std::string_view text, std::string file_name,
+                  const ReadOptions& options = {});
 
 }  // namespace rootsoil

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
-// What the user asked for: plain, validated values. A section that is absent from the scene file is
-// an empty optional here, and then the effect does not exist in the run at all.
+// What the user asked for: plain, validated values. Every scene has the sections that are members here; sections of
+// effects are defined in the effects' folders and kept by type. One that is absent from the scene file is absent here,
+// and then the effect does not exist in the run at all.
 #pragma once
 
+#include <any>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
-#include <utility>
+#include <typeindex>
 #include <vector>
 
-#include "root_sph/exchange/soil_recipe.hpp"
+#include "root_sph/core/enum_names.hpp"
+#include "root_sph/dynamics/solver_options.hpp"
 #include "root_sph/scene/origins.hpp"
+#include "root_sph/tissue/laws/laws.hpp"
 
 namespace rootsoil {
 
@@ -22,6 +27,16 @@ struct SceneSection {
   std::int64_t seed = 1;
   bool allow_unstable = false;
 };
+
+enum class Base { clamped, free };
+template <>
+inline constexpr EnumName<Base> enum_names<Base>[] = {{Base::clamped, "clamped"}, {Base::free, "free"}};
+
+enum class TipAxis { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
+template <>
+inline constexpr EnumName<TipAxis> enum_names<TipAxis>[] = {{TipAxis::plus_x, "+x"}, {TipAxis::minus_x, "-x"},
+                                                            {TipAxis::plus_y, "+y"}, {TipAxis::minus_y, "-y"},
+                                                            {TipAxis::plus_z, "+z"}, {TipAxis::minus_z, "-z"}};
 
 /// Either a capsule filled with a lattice (a rectangle or cylinder with a half disc or half sphere;
 /// the base at x = 0, the tip at x = length_mm) or cells measured by microscopy.
@@ -36,157 +51,130 @@ struct RootSection {
   double base_obliquity_deg = 0.0;  ///< angle of the base cut
   bool cap = true;                  ///< false: a plain rectangle or cylinder
   // microscopy
-  std::string cells_file;  ///< as found relative to the scene file
-  std::string tip_axis = "+x";
+  std::string cells_file;  ///< absolute after reading; empty: a lattice
+  TipAxis tip_axis = TipAxis::plus_x;
   // both
-  std::string base = "clamped";  ///< "clamped" | "free"
-  double clamp_length_mm = 0.0;  ///< 0 = three cells
-};
+  Base base = Base::clamped;
+  std::optional<double> clamp_length_mm;  ///< absent: three cells
 
-struct AnisotropySection {
-  double E_radial_max_MPa = 0.0, x_e_mm = 0.0, s_e_per_mm = 0.0, c_e = 0.0;
+  bool is_lattice() const { return cells_file.empty(); }
+  bool is_clamped() const { return base == Base::clamped; }
 };
 
 struct TissueSection {
-  std::string law = "elastic_growth";  ///< "elastic_growth" | "pressure_deviator"
+  TissueLaw law = law_of<ElasticGrowth>;
   double E_axial_MPa = 0.0;
   double nu_axial = 0.06;
   double nu_radial = 0.3;
-  double G_MPa = 0.0;  ///< resolved: E_A/(2(1+nu_A)) where the scene gives none
+  std::optional<double> G_MPa;  ///< there after reading: E_A/(2(1+nu_A)) where the scene gives none
   double rho0_ug_mm3 = 1000.0;
-  std::optional<AnisotropySection> anisotropy;
 };
 
-/// Piecewise linear in time, constant before the first and after the last row. One row = constant.
-struct PressureSection {
-  std::vector<std::array<double, 2>> table;  ///< (time_h, differential_MPa), times increasing
-};
+enum class Accuracy { fast, balanced, reference };
+template <>
+inline constexpr EnumName<Accuracy> enum_names<Accuracy>[] = {
+    {Accuracy::fast, "fast"}, {Accuracy::balanced, "balanced"}, {Accuracy::reference, "reference"}};
 
-struct GrowthSection {
-  double lambda0_ug_mm3_h = 0.0, x_g_mm = 0.0, s_g_mm = 0.0, c_g = 0.0;
-  std::optional<double> mature_at_mm;  ///< absent: Eq. 6 to the letter, growth never ends
-  double mature_width_mm = 0.1;
-};
+enum class Kernel { cell, isotropic };
+template <>
+inline constexpr EnumName<Kernel> enum_names<Kernel>[] = {{Kernel::cell, "cell"}, {Kernel::isotropic, "isotropic"}};
 
-struct DivisionSection {
-  double l0_mm = 0.0, c_d = 1.0, s_d_per_mm2 = 0.0, x_d_mm = 0.0;
-  std::optional<double> constant_beyond_mm;
-};
+/// equilibrium: stress p and the closed form's velocity.
+enum class Start { equilibrium, rest };
+template <>
+inline constexpr EnumName<Start> enum_names<Start>[] = {{Start::equilibrium, "equilibrium"}, {Start::rest, "rest"}};
 
-/// Eq. 7: a parameter that is listed here follows the pressure differential, between its value at
-/// p_MPa[0] and its value at p_MPa[1], and replaces the one of [growth] or [tissue.anisotropy].
-struct ResponseSection {
-  struct Growth {
-    std::array<double, 2> p_MPa{};
-    std::optional<std::array<double, 2>> lambda0_ug_mm3_h, x_g_mm, s_g_mm, c_g;
-  };
-  struct Anisotropy {
-    std::array<double, 2> p_MPa{};
-    std::optional<std::array<double, 2>> E_radial_max_MPa, x_e_mm, s_e_per_mm, c_e;
-  };
-  std::optional<Growth> growth;
-  std::optional<Anisotropy> anisotropy;
-  bool extrapolate = true;  ///< false: theta is kept within [0, 1]
-};
-
-/// A rigid obstacle that pushes cells back by a penalty force with Coulomb friction.
-struct ObstacleSection {
-  std::string name;
-  std::string shape;                       ///< "plane" | "box" | "disc" (2D) | "sphere" (3D)
-  std::array<double, 3> position_mm{};     ///< a point of the plane, or the centre
-  std::array<double, 3> normal{};          ///< plane: outward, towards the root (unit after validation)
-  std::array<double, 3> half_size_mm{};    ///< box
-  double angle_deg = 0.0;                  ///< box: turned about z
-  double radius_mm = 0.0;                  ///< disc, sphere
-  double friction = 0.3;
-  double contact_modulus_MPa = 0.0;        ///< resolved: E_axial_MPa where the scene gives none
-};
-
-/// Damps and resists pair motions that no velocity gradient can see (docs/physics.md 5.4).
-struct NonAffineControlSection {
-  double damping = 0.5;     ///< alpha
-  double stiffness = 2.0;  ///< times E_axial (docs/decisions/0009)
-};
-
-/// Mature tissue that does not move leaves all loops (effects/sleep.hpp).
-struct SleepSection {
-  std::optional<double> strain_rate_per_h;
-  std::optional<double> mean_over_h;    ///< absent: ten windows
-  std::optional<double> stress_change;  ///< over the pressure differential
-};
-
-/// A point of the tissue followed over time, or a bin at a distance from the tip.
-struct ProbeSection {
-  std::string name;
-  std::optional<std::array<double, 3>> position_mm;           ///< the nearest cell at the start
-  std::optional<std::array<double, 2>> distance_to_tip_mm;    ///< bin
-};
-
-/// The soil that the root grows through: the recipe, as the engine takes it, and what the scene adds.
-struct SoilSection : SoilRecipe {
-  std::optional<std::array<double, 2>> d_range_mm;  ///< as given; after validation d_min_mm and d_max_mm
-  std::optional<double> d_mean_given_mm;            ///< idem
-  std::optional<double> d_spread_given;
-  std::int64_t soil_dimension = 0;                  ///< as given; 0: the scene's
-};
-
-/// How the root's surface and the soil exchange motion and forces.
-struct SoilContactSection {
-  double interval_h = 4e-3;                  ///< between two exchanges, rounded to whole windows
-  std::optional<double> marker_radius_mm;    ///< absent: one cell
-  double marker_spacing = 0.6;               ///< of the radius
-  double map_width_cells = 1.4;
-  double ramp_h = 0.2;                       ///< forces rise from nothing over this time
-  bool stiffness_predictor = false;          ///< for rigid walls
-  bool under_relaxation = false;             ///< Aitken's
-  std::optional<double> tip_length_mm;       ///< absent: a root's diameter
-};
-
-using PenetrometerSection = Penetrometer;
+enum class Beyond { tell, stop };
+template <>
+inline constexpr EnumName<Beyond> enum_names<Beyond>[] = {{Beyond::tell, "tell"}, {Beyond::stop, "stop"}};
 
 struct NumericsSection {
-  std::string accuracy = "balanced";  ///< preset: "fast" | "balanced" | "reference"
-  std::optional<double> step_h;       ///< absent: chosen from the preset, see step_choice
-  int window_steps = 20;              ///< steps for which neighbours and gradients stay frozen
-  std::string kernel = "cell";        ///< "cell" | "isotropic"
+  Accuracy accuracy = Accuracy::balanced;
+  std::optional<double> step_h;  ///< absent: chosen from the preset, see model/model.hpp
+  int window_steps = 20;         ///< with inertia: steps for which neighbours and gradients stay frozen
+  Kernel kernel = Kernel::cell;
   double eta = 1.5;
   double H_bar = 2.0;
-  std::string gradient = "quadratic_at_surface";  ///< "plain" | "linear" | "quadratic" | "quadratic_at_surface"
-  std::string stepper = "symplectic";  ///< "symplectic" | "predictor_corrector"
-  std::string inertia = "tensor";      ///< "tensor" | "scalar"
+  GradientMode gradient = GradientMode::quadratic_at_surface;
+  Stepper stepper = Stepper::quasi_static;
+  double force_tolerance = 1e-4;  ///< quasi_static: rms force on cells over the pressure differential times their face
+  InertiaMode inertia = InertiaMode::tensor;
   bool inertia_compensation = true;
-  std::optional<double> mass_damping_per_h;  ///< absent: 0 with growth, twice the lowest frequency without
-  std::optional<double> midline_damping_per_h;  ///< absent: 5 for a clamped root that grows without obstacles, else 0
-  double artificial_viscosity = 0.0;         ///< bulk pair viscosity (the authors' code uses 0.6-1)
-  std::string start = "equilibrium";         ///< "equilibrium": stress p and the closed form's velocity; "rest"
+  std::optional<double> mass_damping_per_h;     ///< absent: 0 with growth, twice the lowest frequency without
+  std::optional<double> midline_damping_per_h;  ///< absent: 5 for a clamped root that grows and is not pushed, else 0
+  double artificial_viscosity = 0.0;            ///< bulk pair viscosity (the authors' code uses 0.6-1)
+  Start start = Start::equilibrium;
+  double inertia_error_max = 0.05;        ///< share of the pressure differential; beyond it a run leaves its accuracy
+  Beyond beyond_accuracy = Beyond::tell;  ///< what a run does then
+
+  bool has_inertia() const { return stepper != Stepper::quasi_static; }
+  /// Steps for which neighbours and gradients stay frozen.
+  int steps_a_window() const { return has_inertia() ? window_steps : 1; }
 };
 
 struct OutputSection {
   double every_h = 0.0;
-  double checkpoint_every_h = 0.0;
-  std::vector<std::string> fields;  ///< empty: all
-  bool picture = false;             ///< draw overview.png when the run ends
+  std::optional<double> checkpoint_every_h;  ///< there after reading: every_h where the scene gives none
+  std::vector<std::string> fields;           ///< empty: all
+  bool picture = false;                      ///< draw overview.png when the run ends
 };
 
-struct Scene {
+/// What effects say about a scene that others need to know. Complete when the scene has been read.
+struct SceneFacts {
+  /// Lowest and highest pressure differential over the whole run, MPa.
+  std::array<double, 2> pressure_MPa{0.0, 0.0};
+  /// Names of the effects that push the root from outside.
+  std::vector<std::string> pushed_by;
+  bool can_be_arrested = false;  ///< one of them can stop its growth
+};
+
+/// Eq. 7 for one section: its keys that follow the pressure differential, by name.
+struct Response {
+  std::string section;            ///< "growth", "tissue.anisotropy"
+  std::array<double, 2> p_MPa{};  ///< where the two values of each pair hold
+  std::map<std::string, std::array<double, 2>> pairs;
+};
+
+class Scene {
+ public:
   SceneSection scene;
   RootSection root;
   TissueSection tissue;
-  std::optional<PressureSection> pressure;
-  std::optional<GrowthSection> growth;
-  std::optional<DivisionSection> division;
-  std::optional<ResponseSection> response;
-  std::optional<NonAffineControlSection> non_affine_control;
-  std::optional<SleepSection> sleep;
-  std::vector<ObstacleSection> obstacles;
-  std::vector<ProbeSection> probes;
-  std::optional<SoilSection> soil;
-  std::optional<SoilContactSection> soil_contact;  ///< there where the soil is
-  std::optional<PenetrometerSection> penetrometer;
   NumericsSection numerics;
   OutputSection output;
+  std::vector<Response> responses;
+  bool has_root = true;  ///< false: read for its soil alone (rootsoil penetrometer)
+  SceneFacts facts;
   std::string file;  ///< where it was read, for messages
   Origins origins;   ///< and where in it
+
+  /// All sections of a type that an effect defines, in the file's order; for most there is at most one.
+  template <class S>
+  const std::vector<S>& all() const {
+    static const std::vector<S> none;
+    const auto found = sections_.find(typeid(S));
+    return found == sections_.end() ? none : *std::any_cast<std::vector<S>>(&found->second);
+  }
+  template <class S>
+  std::vector<S>& all() {
+    std::any& list = sections_[typeid(S)];
+    if (!list.has_value()) list = std::vector<S>{};
+    return *std::any_cast<std::vector<S>>(&list);
+  }
+  /// The section, or nullptr where the scene has none.
+  template <class S>
+  const S* find() const {
+    const std::vector<S>& list = all<S>();
+    return list.empty() ? nullptr : &list.front();
+  }
+  template <class S>
+  S* find() {
+    std::vector<S>& list = all<S>();
+    return list.empty() ? nullptr : &list.front();
+  }
+
+ private:
+  std::map<std::type_index, std::any> sections_;
 };
 
 }  // namespace rootsoil

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "root_sph/core/errors.hpp"
+#include "root_sph/scene/response.hpp"
 #include "root_sph/scene/schema_sections.hpp"
 
 namespace rootsoil {
@@ -38,40 +40,38 @@ const KeySpec* SectionSpec::find(std::string_view key) const {
   return found == keys.end() ? nullptr : &*found;
 }
 
-const std::vector<SectionSpec>& schema() {
-  using namespace sections;
-  static const std::vector<SectionSpec> table{
-      scene_section(),
-      root_section(),
-      tissue_section(),
-      anisotropy_section(),
-      pressure_section(),
-      growth_section(),
-      division_section(),
-      response_section(),
-      response_growth_section(),
-      response_anisotropy_section(),
-      non_affine_control_section(),
-      sleep_section(),
-      obstacle_section(),
-      probe_section(),
-      numerics_section(),
-      output_section(),
-      soil_section(),
-      soil_obstacle_section(),
-      soil_contact_section(),
-      penetrometer_section(),
-  };
-  return table;
+SectionSpec SectionSpec::completed_by(std::function<void(Scene&)> check) && {
+  complete = std::move(check);
+  return std::move(*this);
 }
 
-const SectionSpec* find_section(std::string_view name) {
-  const std::vector<SectionSpec>& t = schema();
-  const auto found = std::find_if(t.begin(), t.end(), [&](const SectionSpec& s) { return s.name == name; });
-  return found == t.end() ? nullptr : &*found;
+SectionSpec SectionSpec::also_without_root() && {
+  without_root = true;
+  return std::move(*this);
 }
 
-bool applies(const SectionSpec& section, const KeySpec& key, const Scene& scene, std::size_t index) {
+Language::Language(std::vector<SectionSpec> of_effects) {
+  for (SectionSpec& section : sections::of_every_scene()) sections_.push_back(std::move(section));
+  std::vector<SectionSpec> responses;
+  for (const SectionSpec& section : of_effects) {
+    const bool responds =
+        std::any_of(section.keys.begin(), section.keys.end(), [](const KeySpec& k) { return k.responds; });
+    if (responds) responses.push_back(response_section(section));
+  }
+  for (SectionSpec& section : of_effects) {
+    const bool holds_responses = section.name == "response";
+    sections_.push_back(std::move(section));
+    if (holds_responses) std::move(responses.begin(), responses.end(), std::back_inserter(sections_));
+  }
+}
+
+const SectionSpec* Language::find(std::string_view name) const {
+  const auto found =
+      std::find_if(sections_.begin(), sections_.end(), [&](const SectionSpec& s) { return s.name == name; });
+  return found == sections_.end() ? nullptr : &*found;
+}
+
+bool Language::applies(const SectionSpec& section, const KeySpec& key, const Scene& scene, std::size_t index) const {
   if (!key.condition) return true;
   const KeySpec* other = section.find(key.condition->key);
   ROOTSOIL_ASSERT(other != nullptr);
@@ -82,10 +82,9 @@ bool applies(const SectionSpec& section, const KeySpec& key, const Scene& scene,
   return value && std::find(words.begin(), words.end(), std::get<std::string>(*value)) != words.end();
 }
 
-bool supplied_by_response(const KeySpec& key, const Scene& scene) {
-  if (key.response_section.empty()) return false;
-  const SectionSpec& section = *find_section(key.response_section);
-  return section.count(scene) > 0 && section.find(key.name)->get(scene, 0).has_value();
+bool Language::supplied_by_response(const SectionSpec& section, const KeySpec& key, const Scene& scene) const {
+  const Response* response = key.responds ? response_of(scene, section.name) : nullptr;
+  return response && response->pairs.contains(key.name);
 }
 
 std::string key_path(const SectionSpec& section, std::size_t index, std::string_view key) {

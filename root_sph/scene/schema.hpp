@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The scene file's language, as one table: every section, every key. Reading, the search for misspelt
-// keys, `rootsoil describe` and the resolved scene file all follow from it; a new key is one line there.
+// The scene file's language as a table: every section, every key. Reading, the search for misspelt keys, `rootsoil
+// describe` and the resolved scene file all follow from it; a new key is one line where its section is defined.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -34,7 +33,7 @@ struct Limits {
   double high = std::numeric_limits<double>::infinity();
   bool low_open = false;
   bool high_open = false;
-  std::string above_remedy;  ///< what a far too large value hints at: mostly a wrong unit
+  std::string above_remedy = {};  ///< what a far too large value hints at: mostly a wrong unit
 
   bool contains(double number) const;
   bool bounded() const;
@@ -50,20 +49,23 @@ struct Condition {
 };
 
 struct KeySpec {
-  std::string name;
+  std::string name = {};
   ValueType type = ValueType::number;
-  std::string unit;
-  Limits limits;
-  std::vector<std::string> choices;
-  std::string meaning;
-  std::string source;
+  std::string unit = {};
+  Limits limits = {};
+  std::vector<std::string> choices = {};
+  std::string meaning = {};
+  std::string source = {};
   bool required = false;
-  std::string default_text;
-  std::optional<Condition> condition;
-  std::string response_section;  ///< a section of response that can supply this key instead
-  std::function<void(Scene&, std::size_t, const Value&)> set;
+  std::string default_text = {};
+  std::optional<Condition> condition = {};
+  bool names_file = false;  ///< results depend on what the file holds, not on where it lies
+  bool responds = false;  ///< can follow the pressure differential: a pair in [response.*] supplies it instead (Eq. 7)
+  std::function<void(Scene&, std::size_t, const Value&)> set = {};
   /// The value in use, nothing where there is none.
-  std::function<std::optional<Value>(const Scene&, std::size_t)> get;
+  std::function<std::optional<Value>(const Scene&, std::size_t)> get = {};
+  /// Read before the other keys of its section, whose values it stands for: fills them in.
+  std::function<void(Scene&)> stands_for = {};
 };
 
 enum class SectionKind {
@@ -74,25 +76,20 @@ enum class SectionKind {
 };
 
 struct SectionSpec {
-  std::string name;  ///< dotted, e.g. "tissue.anisotropy"
+  std::string name = {};  ///< dotted, e.g. "tissue.anisotropy"
   SectionKind kind = SectionKind::optional;
-  std::string meaning;
-  std::vector<KeySpec> keys;
-  std::function<std::size_t(const Scene&)> count;  ///< 0 = absent; otherwise how many
-  std::function<void(Scene&)> add;                 ///< makes it present, or appends one
+  std::string meaning = {};
+  std::vector<KeySpec> keys = {};
+  std::function<std::size_t(const Scene&)> count = {};  ///< 0 = absent; otherwise how many
+  std::function<void(Scene&)> add = {};                 ///< makes it present, or appends one
+  /// Checks what concerns several keys or other sections, and fills in what is left out. Once, with everything read.
+  std::function<void(Scene&)> complete = {};
+  bool without_root = false;  ///< means something where there is no root too (rootsoil penetrometer)
 
   const KeySpec* find(std::string_view key) const;
+  SectionSpec completed_by(std::function<void(Scene&)> check) &&;
+  SectionSpec also_without_root() &&;
 };
-
-/// In the order in which sections are read and written: a section comes after the one it lies in.
-const std::vector<SectionSpec>& schema();
-const SectionSpec* find_section(std::string_view name);
-
-/// Does the key's condition hold in element `index` of the section?
-bool applies(const SectionSpec& section, const KeySpec& key, const Scene& scene, std::size_t index);
-
-/// Is the key supplied by [response.*], which then replaces it?
-bool supplied_by_response(const KeySpec& key, const Scene& scene);
 
 /// "root.radius_mm", "obstacle[2].radius_mm"; without key the element itself. Users count from 1.
 std::string key_path(const SectionSpec& section, std::size_t index, std::string_view key = {});
@@ -106,10 +103,29 @@ std::string toml_text(const Value& value);
 /// "a number above 0", "one of a, b"
 std::string allowed_text(const KeySpec& key, int dimension);
 
-/// What `describe` says about one section, or about all.
-std::string describe(const std::optional<std::string>& section);
-
 /// The candidate with the smallest edit distance (letters inserted, dropped, changed or swapped).
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// Every section that a scene file can have: those of every scene, those of effects, and [response.*] for sections with
+/// keys that respond.
+class Language {
+ public:
+  /// \param of_effects in the order in which they are read, completed and written; one comes after the one it lies in
+  explicit Language(std::vector<SectionSpec> of_effects);
+
+  const std::vector<SectionSpec>& sections() const { return sections_; }
+  const SectionSpec* find(std::string_view name) const;
+
+  /// Does the key's condition hold in element `index` of the section?
+  bool applies(const SectionSpec& section, const KeySpec& key, const Scene& scene, std::size_t index) const;
+  /// Is the key supplied by [response.*], which then replaces it?
+  bool supplied_by_response(const SectionSpec& section, const KeySpec& key, const Scene& scene) const;
+
+  /// What `describe` says about one section, or about all.
+  std::string describe(const std::optional<std::string>& section) const;
+
+ private:
+  std::vector<SectionSpec> sections_;
+};
 
 }  // namespace rootsoil

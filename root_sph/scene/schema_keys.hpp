@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,11 +20,11 @@ using enum SectionKind;
 
 // ---- limits ---------------------------------------------------------------------------------------
 
-inline Limits above(double low) { return {.low = low, .low_open = true, .above_remedy = {}}; }
-inline Limits at_least(double low) { return {.low = low, .above_remedy = {}}; }
-inline Limits between(double low, double high) { return {.low = low, .high = high, .above_remedy = {}}; }
+inline Limits above(double low) { return {.low = low, .low_open = true}; }
+inline Limits at_least(double low) { return {.low = low}; }
+inline Limits between(double low, double high) { return {.low = low, .high = high}; }
 inline Limits inside(double low, double high) {
-  return {.low = low, .high = high, .low_open = true, .high_open = true, .above_remedy = {}};
+  return {.low = low, .high = high, .low_open = true, .high_open = true};
 }
 inline const Limits any_number;
 
@@ -46,8 +47,6 @@ inline const Limits modulus = above(0).up_to(1e7, pascals);
 inline const Limits pressure = at_least(-10).up_to(10, pascals);
 inline const Limits place_mm = between(-1e3, 1e3);
 inline const Limits fraction = between(-1, 1);
-inline constexpr const char* response_growth = "response.growth";
-inline constexpr const char* response_anisotropy = "response.anisotropy";
 
 // ---- struct members as values ---------------------------------------------------------------------
 
@@ -75,6 +74,20 @@ struct Codec<std::string> : PlainCodec<std::string, ValueType::text> {
   static std::optional<Value> write(const std::string& member) {
     return member.empty() ? std::nullopt : std::optional<Value>(member);
   }
+};
+template <>
+struct Codec<Rows> : PlainCodec<Rows, ValueType::rows> {
+  static std::optional<Value> write(const Rows& member) {
+    return member.empty() ? std::nullopt : std::optional<Value>(member);
+  }
+};
+/// An option is an enum; its words stand beside it (core/enum_names.hpp). Reading has checked the word.
+template <class E>
+requires std::is_enum_v<E>
+struct Codec<E> {
+  static constexpr ValueType type = ValueType::text;
+  static E read(const Value& value) { return *from_name<E>(std::get<std::string>(value)); }
+  static std::optional<Value> write(E member) { return Value(std::string(name_of(member))); }
 };
 template <std::size_t N>
 struct Codec<std::array<double, N>> {
@@ -120,8 +133,18 @@ struct Key {
   Key only_where(std::string key, std::vector<std::string> values) && {
     return std::move(*this).when({std::move(key), std::move(values), false});
   }
-  Key or_from_response(std::string section) && {
-    spec.response_section = std::move(section);
+  /// Of a file that the run reads (KeySpec::names_file).
+  Key names_file() && {
+    spec.names_file = true;
+    return std::move(*this);
+  }
+  /// Can follow the pressure differential instead (Eq. 7).
+  Key responds() && {
+    spec.responds = true;
+    return std::move(*this);
+  }
+  Key stands_for(std::function<void(Scene&)> fill) && {
+    spec.stands_for = std::move(fill);
     return std::move(*this);
   }
   Key written_when(bool (*needed)(const S&)) && {
@@ -137,20 +160,47 @@ struct Key {
 };
 
 template <class S, class T>
-Key<S> key(T S::*member, std::string name, std::string unit, Allowed allowed, std::string meaning, std::string source) {
+Key<S> key(T S::*member, const std::string& name, const std::string& unit, const Allowed& allowed,
+           const std::string& meaning, const std::string& source) {
   using C = Codec<T>;
   Key<S> k;
-  k.spec.name = std::move(name);
-  k.spec.type = C::type;
-  k.spec.unit = std::move(unit);
-  k.spec.limits = std::move(allowed.limits);
-  k.spec.choices = std::move(allowed.choices);
-  k.spec.meaning = std::move(meaning);
-  k.spec.source = std::move(source);
+  k.spec = {.name = name,
+            .type = C::type,
+            .unit = unit,
+            .limits = allowed.limits,
+            .choices = allowed.choices,
+            .meaning = meaning,
+            .source = source};
   k.set = [member](S& s, const Value& value) { s.*member = C::read(value); };
   k.get = [member](const S& s) { return C::write(s.*member); };
   const std::optional<Value> value_by_default = k.get(S{});
   k.spec.default_text = value_by_default ? toml_text(*value_by_default) : "none";
+  return k;
+}
+
+/// An option: what is allowed are the words of its enum.
+template <class S, class E>
+requires std::is_enum_v<E> Key<S> key(E S::*member, const std::string& name, const std::string& meaning,
+                                      const std::string& source) {
+  return key(member, name, "-", one_of(names_of<E>()), meaning, source);
+}
+
+/// A table over time given by one number: beside the key of the rows, for a value that stays.
+template <class S>
+Key<S> constant_or_table(Rows S::*table, const std::string& name, const std::string& unit, const Limits& limits,
+                         const std::string& meaning, const std::string& source) {
+  Key<S> k;
+  k.spec = {.name = name,
+            .type = ValueType::number,
+            .unit = unit,
+            .limits = limits,
+            .meaning = meaning,
+            .source = source,
+            .default_text = "none"};
+  k.set = [table](S& s, const Value& value) { s.*table = {{0.0, std::get<double>(value)}}; };
+  k.get = [table](const S& s) {
+    return (s.*table).size() == 1 ? std::optional<Value>((s.*table).front()[1]) : std::nullopt;
+  };
   return k;
 }
 
@@ -162,14 +212,10 @@ T S::*member_of(T Base::*member) {
 
 // ---- sections -------------------------------------------------------------------------------------
 
-// A section is a struct, an optional struct or a list of structs.
+// A section is a member of the scene, or one of a list of structs.
 template <class S>
 std::size_t count_of(const S&) {
   return 1;
-}
-template <class S>
-std::size_t count_of(const std::optional<S>& section) {
-  return section ? 1 : 0;
 }
 template <class S>
 std::size_t count_of(const std::vector<S>& section) {
@@ -179,14 +225,6 @@ std::size_t count_of(const std::vector<S>& section) {
 template <class S>
 auto& element_of(S& section, std::size_t) {
   return section;
-}
-template <class S>
-S& element_of(std::optional<S>& section, std::size_t) {
-  return *section;
-}
-template <class S>
-const S& element_of(const std::optional<S>& section, std::size_t) {
-  return *section;
 }
 template <class S>
 S& element_of(std::vector<S>& section, std::size_t index) {
@@ -200,10 +238,6 @@ const S& element_of(const std::vector<S>& section, std::size_t index) {
 template <class S>
 void add_to(S&) {}
 template <class S>
-void add_to(std::optional<S>& section) {
-  section = S{};
-}
-template <class S>
 void add_to(std::vector<S>& section) {
   section.emplace_back();
 }
@@ -211,8 +245,7 @@ void add_to(std::vector<S>& section) {
 /// `where` gives the section's place in a scene, nullptr where the section around it is absent.
 template <class S, class Where>
 SectionSpec section(std::string name, SectionKind kind, std::string meaning, Where where, std::vector<Key<S>> keys) {
-  SectionSpec spec{
-      .name = std::move(name), .kind = kind, .meaning = std::move(meaning), .keys = {}, .count = {}, .add = {}};
+  SectionSpec spec{.name = std::move(name), .kind = kind, .meaning = std::move(meaning)};
   spec.count = [where](const Scene& scene) { return where(scene) ? count_of(*where(scene)) : 0; };
   spec.add = [where](Scene& scene) { add_to(*where(scene)); };
   for (Key<S>& k : keys) {
@@ -225,6 +258,13 @@ SectionSpec section(std::string name, SectionKind kind, std::string meaning, Whe
     };
   }
   return spec;
+}
+
+/// A section of an effect, which the scene keeps by its type.
+template <class S>
+SectionSpec section(std::string name, SectionKind kind, std::string meaning, std::vector<Key<S>> keys) {
+  return section<S>(
+      std::move(name), kind, std::move(meaning), [](auto& scene) { return &scene.template all<S>(); }, std::move(keys));
 }
 
 }  // namespace rootsoil::sections

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "root_sph/core/errors.hpp"
-#include "root_sph/scene/schema.hpp"
+#include "root_sph/scene/response.hpp"
 
 namespace rootsoil {
 namespace {
@@ -125,7 +125,7 @@ std::string describe_section(const SectionSpec& s) {
     } else if (!condition.empty()) {
       out += wrapped(condition, 6);
     }
-    if (!k.response_section.empty()) out += wrapped(fmt::format("here or in [{}]", k.response_section), 6);
+    if (k.responds) out += wrapped(fmt::format("here or in [{}]", response_section_name(s.name)), 6);
     out += wrapped(k.source == "-" ? k.meaning : fmt::format("{} ({})", k.meaning, k.source), 6);
   }
   return out;
@@ -156,11 +156,11 @@ std::string allowed_text(const KeySpec& key, int dimension) {
   return text;
 }
 
-std::string describe(const std::optional<std::string>& section) {
+std::string Language::describe(const std::optional<std::string>& section) const {
   if (section) {
-    if (const SectionSpec* found = find_section(*section)) return describe_section(*found);
+    if (const SectionSpec* found = find(*section)) return describe_section(*found);
     std::vector<std::string> names;
-    for (const SectionSpec& s : schema()) names.push_back(s.name);
+    for (const SectionSpec& s : sections_) names.push_back(s.name);
     throw InputError({.file = {},
                       .line = 0,
                       .key = {},
@@ -170,7 +170,7 @@ std::string describe(const std::optional<std::string>& section) {
                       .remedy = fmt::format("did you mean {}?", nearest(*section, names))});
   }
   std::string out;
-  for (const SectionSpec& s : schema()) {
+  for (const SectionSpec& s : sections_) {
     if (!out.empty()) out += '\n';
     out += describe_section(s);
   }

@@ -82,6 +82,37 @@ Voigt<Dim> elastic_stress(const Stiffness<Dim>& k, const Voigt<Dim>& strain) {
   return s;
 }
 
+/// C as a matrix, column by column.
+template <int Dim>
+VoigtMat<Dim> elastic_tangent(const Stiffness<Dim>& k) {
+  VoigtMat<Dim> c;
+  for (int column = 0; column < voigt_size<Dim>; ++column) {
+    c.col(column) = elastic_stress<Dim>(k, Voigt<Dim>(Voigt<Dim>::Unit(column)));
+  }
+  return c;
+}
+
+/// S : stress, engineering shear: the strain of which the stress is C : strain.
+template <int Dim>
+Voigt<Dim> elastic_strain(const Stiffness<Dim>& k, const Voigt<Dim>& stress) {
+  using namespace stiffness_entry;
+  // Of the radial strains, the sum goes with the axial one and the difference is by itself.
+  const double lateral = Dim == 2 ? k[c22] : k[c22] + k[Dim == 2 ? c22 : c23];
+  const double lateral_stress = Dim == 2 ? stress[1] : stress[1] + stress[Dim - 1];
+  const double det = k[c11] * lateral - (Dim - 1) * k[c12] * k[c12];
+  const double axial = (lateral * stress[0] - k[c12] * lateral_stress) / det;
+  const double radial = (k[c11] * lateral_stress - (Dim - 1) * k[c12] * stress[0]) / det;  // the sum
+  Voigt<Dim> strain;
+  if constexpr (Dim == 2) {
+    strain << axial, radial, stress[2] / k[g];
+  } else {
+    const double difference = (stress[1] - stress[2]) / (k[c22] - k[c23]);
+    strain << axial, 0.5 * (radial + difference), 0.5 * (radial - difference),  //
+        stress[3] / k[g23], stress[4] / k[g], stress[5] / k[g];
+  }
+  return strain;
+}
+
 /// tr(S : sigma): the elastic volume strain, rho0/rho - 1.
 template <int Dim>
 double volume_strain(const Stiffness<Dim>& k, const Voigt<Dim>& stress) {
@@ -96,6 +127,25 @@ template <int Dim>
 double bulk_modulus(const Stiffness<Dim>& k) {
   using namespace stiffness_entry;
   return 1.0 / (k[axial_trace] + (Dim - 1) * k[radial_trace]);
+}
+
+/// value 1.
+template <int Dim>
+Voigt<Dim> isotropic(double value) {
+  Voigt<Dim> s = Voigt<Dim>::Zero();
+  s.template head<Dim>().setConstant(value);
+  return s;
+}
+
+/// Strains or strain rates along the root and across it.
+struct AxialRadial {
+  double axial, radial;
+};
+
+/// S : p 1, Eq. 8 with p: axial p (1 - nu_A)/E_A, radial p (1/E_R - nu_A/E_A); 3D: (1 - 2 nu_A), (1 - nu_R)/E_R.
+template <int Dim>
+AxialRadial pressure_strain(const Stiffness<Dim>& k, double p_MPa) {
+  return {p_MPa * k[stiffness_entry::axial_trace], p_MPa * k[stiffness_entry::radial_trace]};
 }
 
 /// Takes the isotropic part away (2D: half the trace, the paper's plane form; 3D: a third).

@@ -10,8 +10,8 @@
 namespace rootsoil {
 namespace {
 
-/// Eigenvalues of the acoustic tensor Gamma_ik = A_ijkl n_j n_l for n = (cos, sin, 0), A a transversely isotropic tangent
-/// that need not be symmetric: two waves in the plane of n and the axis, and one across it.
+/// Eigenvalues of the acoustic tensor Gamma_ik = A_ijkl n_j n_l for n = (cos, sin, 0), A a transversely isotropic
+/// tangent that need not be symmetric: two waves in the plane of n and the axis, and one across it.
 template <int Dim>
 std::array<std::complex<double>, Dim> acoustic_moduli(const VoigtMat<Dim>& a, double cosine, double sine) {
   constexpr int shear12 = Dim == 2 ? 2 : 5;
@@ -29,24 +29,6 @@ std::array<std::complex<double>, Dim> acoustic_moduli(const VoigtMat<Dim>& a, do
 }
 
 }  // namespace
-
-template <int Dim>
-VoigtMat<Dim> elastic_growth_tangent(const ElasticConstants& constants) {
-  const VoigtMat<Dim> s = compliance<Dim>(constants);
-  VoigtMat<Dim> tangent = s.diagonal().cwiseInverse().asDiagonal();
-  tangent.template topLeftCorner<Dim, Dim>() = s.template topLeftCorner<Dim, Dim>().inverse();
-  return tangent;
-}
-
-template <int Dim>
-VoigtMat<Dim> pressure_deviator_tangent(const ElasticConstants& constants) {
-  VoigtMat<Dim> tangent = elastic_growth_tangent<Dim>(constants);
-  for (int column = 0; column < voigt_size<Dim>; ++column) {
-    tangent.col(column) = deviator<Dim>(tangent.col(column));
-  }
-  tangent.template topLeftCorner<Dim, Dim>().array() += bulk_modulus<Dim>(stiffness<Dim>(constants));
-  return tangent;
-}
 
 template <int Dim>
 AcousticFinding scan_acoustic_tensor(const VoigtMat<Dim>& tangent) {
@@ -70,10 +52,6 @@ AcousticFinding scan_acoustic_tensor(const VoigtMat<Dim>& tangent) {
   return worst;
 }
 
-template VoigtMat<2> elastic_growth_tangent<2>(const ElasticConstants&);
-template VoigtMat<3> elastic_growth_tangent<3>(const ElasticConstants&);
-template VoigtMat<2> pressure_deviator_tangent<2>(const ElasticConstants&);
-template VoigtMat<3> pressure_deviator_tangent<3>(const ElasticConstants&);
 template AcousticFinding scan_acoustic_tensor<2>(const VoigtMat<2>&);
 template AcousticFinding scan_acoustic_tensor<3>(const VoigtMat<3>&);
 

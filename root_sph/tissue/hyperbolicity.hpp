@@ -11,16 +11,8 @@ struct AcousticFinding {
   bool hyperbolic = true;          ///< every eigenvalue real and positive in every direction
   double smallest_real_MPa = 0.0;  ///< smallest real part
   double largest_imaginary_MPa = 0.0;
-  double angle_deg = 0.0;          ///< direction of the worst case, from the root axis
+  double angle_deg = 0.0;  ///< direction of the worst case, from the root axis
 };
-
-/// Tangent of elastic_growth: C (symmetric).
-template <int Dim>
-VoigtMat<Dim> elastic_growth_tangent(const ElasticConstants& constants);
-
-/// Tangent of pressure_deviator: K 1(x)1 + Lambda C (not symmetric unless C:1 is parallel to 1).
-template <int Dim>
-VoigtMat<Dim> pressure_deviator_tangent(const ElasticConstants& constants);
 
 /// Scans directions in steps of a degree in a plane through the root axis, which is enough for a transversely isotropic
 /// tangent (any other is not meant here).

@@ -5,11 +5,10 @@
 #include <functional>
 
 #include "soil_coupling/twins/twin_state.hpp"
+#include "soil_coupling/twins/vectors.hpp"
 
 namespace rootsoil::twins {
 namespace {
-
-Eigen::Vector3d eigen(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 void add(Vec3& sum, const Eigen::Vector3d& v) {
   for (int a = 0; a < 3; ++a) sum[static_cast<std::size_t>(a)] += v[a];

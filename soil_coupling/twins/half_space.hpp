@@ -20,19 +20,16 @@ struct HalfSpaceParameters {
 
 class HalfSpace final : public SoilPort {
  public:
-  explicit HalfSpace(HalfSpaceParameters parameters) : parameters_(parameters) {}
+  explicit HalfSpace(const HalfSpaceParameters& parameters) : parameters_(parameters) {}
   SurfaceForces advance(const SurfaceMotion& motion) override;
   std::vector<std::string> number_names() const override { return {"soil_retreat_mm", "soil_overlap_mm"}; }
   void save(const std::filesystem::path& file) override;
   void load(const std::filesystem::path& file) override;
 
-  /// How far the plane stands back.
-  double retreat_mm() const { return retreat_mm_; }
-
  private:
   HalfSpaceParameters parameters_;
   std::map<std::int64_t, Eigen::Vector3d> slip_mm_;  ///< by marker, tangential, since contact began
-  double retreat_mm_ = 0.0;
+  double retreat_mm_ = 0.0;                          ///< how far the plane stands back
 };
 
 /// The retreat X at which the spring behind the plane carries the contacts: K X = k sum (depth - X)+. Pure.

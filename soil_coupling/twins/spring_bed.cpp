@@ -4,13 +4,9 @@
 #include <algorithm>
 
 #include "soil_coupling/twins/twin_state.hpp"
+#include "soil_coupling/twins/vectors.hpp"
 
 namespace rootsoil::twins {
-namespace {
-
-Eigen::Vector3d eigen(const Vec3& v) { return {v[0], v[1], v[2]}; }
-
-}  // namespace
 
 SurfaceForces SpringBed::advance(const SurfaceMotion& motion) {
   const std::size_t n = motion.id.size();

@@ -20,7 +20,7 @@ struct SpringBedParameters {
 
 class SpringBed final : public SoilPort {
  public:
-  explicit SpringBed(SpringBedParameters parameters) : parameters_(parameters) {}
+  explicit SpringBed(const SpringBedParameters& parameters) : parameters_(parameters) {}
   SurfaceForces advance(const SurfaceMotion& motion) override;
   std::vector<std::string> number_names() const override { return {"soil_broken", "soil_tied"}; }
   void save(const std::filesystem::path& file) override;

@@ -134,7 +134,7 @@ def check_functors(recipe: dict[str, Any]) -> None:
             raise RuntimeError(f"a contact has {type(contact.phys).__name__} instead of {names.phys}")
 
 
-def set_friction(recipe: dict[str, Any], friction_deg: float) -> None:
+def set_friction(friction_deg: float) -> None:
     """Of the grains, in the material and in every contact there is."""
     utils.setContactFriction(radians(friction_deg))
     O.materials["grain"].frictionAngle = radians(friction_deg)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What runs in the soil's process: answers one request after the other (message.hpp). Started by soil_coupling only, with
-the socket as descriptor 3 and the shared block as descriptor 4."""
+"""What runs in the soil's process: answers one request after the other (message.hpp). Started by soil_coupling only,
+with the socket as descriptor 3 and the shared block as descriptor 4."""
 
 from __future__ import annotations
 
@@ -20,6 +20,11 @@ from soil_file import Refused  # noqa: E402
 
 SOCKET_FD, BLOCK_FD = 3, 4
 PROGRESS_EVERY_S = 5.0
+
+
+def path_of(code: str) -> Path:
+    """The path whose bytes these hexadecimal digits are; names of files need not be UTF-8, which JSON is."""
+    return Path(os.fsdecode(bytes.fromhex(code)))
 
 
 class Driver:
@@ -49,7 +54,7 @@ class Driver:
         from soil import make_sample
 
         task = json.loads(self.channel.text())
-        meta = make_sample(task["recipe"], Path(task["sample"]), self.progress)
+        meta = make_sample(task["recipe"], path_of(task["sample"]), self.progress)
         self.channel.answer("done", json.dumps(meta))
 
     def build(self, request: Packet) -> None:
@@ -59,8 +64,14 @@ class Driver:
         task = json.loads(self.channel.text())
         body = self.channel.columns("body", request.rows)
         self.soil = Soil(task["recipe"], task["start"], self.progress)
-        sample = Path(task["sample"]) if task["sample"] else None
-        self.soil.build(sample, body["position_mm"].copy(), body["radius_mm"].copy())
+        sample = path_of(task["sample"]) if task["sample"] else None
+        begin = column_offset("body", len(TABLES["body"]), request.rows)
+        listed = self.channel.columns("body", task["grains"], begin)
+        self.soil.build(
+            sample,
+            (listed["position_mm"].copy(), listed["radius_mm"].copy()),
+            (body["position_mm"].copy(), body["radius_mm"].copy()),
+        )
         self.channel.answer("done")
 
     def load(self, _: Packet) -> None:
@@ -70,7 +81,7 @@ class Driver:
         task = json.loads(self.channel.text())
         if self.soil is None:
             self.soil = Soil(task["recipe"], task["start"], self.progress)
-        self.soil.load(Path(task["file"]))
+        self.soil.load(path_of(task["file"]))
         self.channel.answer("done")
 
     def advance(self, request: Packet) -> None:
@@ -100,7 +111,7 @@ class Driver:
 
     def save(self, _: Packet) -> None:
         """Writes a checkpoint."""
-        self.soil.save(Path(json.loads(self.channel.text())["file"]))
+        self.soil.save(path_of(json.loads(self.channel.text())["file"]))
         self.channel.answer("done")
 
 

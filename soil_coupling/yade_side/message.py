@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 MAGIC = 0x4C494F53
-VERSION = 1
+VERSION = 2
 TEXT_ROOM = 65536
 ALIGNMENT = 64
 PROGRESS_ROOM = 512
@@ -88,7 +88,7 @@ def describe_layout() -> str:
         offsets[name] = at
         at += struct.calcsize("<" + code)
     rows = 13
-    tables = {}
+    tables: dict[str, list[Any]] = {}
     for table, columns in TABLES.items():
         tables[table] = [[*column, column_offset(table, k, rows)] for k, column in enumerate(columns)]
         tables[table].append(column_offset(table, len(columns), rows))

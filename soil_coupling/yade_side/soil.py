@@ -8,7 +8,6 @@ rub without friction.
 
 from __future__ import annotations
 
-import csv
 import os
 import time
 from collections.abc import Callable
@@ -42,6 +41,7 @@ SETTLED = 0.02  # mean unbalanced over mean contact force, after the root has be
 SETTLE_BLOCKS, SETTLE_STEPS = 100, 200
 OVERLAP_AT_MOST = 0.5  # of two spheres, over the smaller radius: beyond it contact laws mean nothing
 COLLIDE = 2.0  # a squared speed that makes the collider look again: it does not see new markers and radii by itself
+Balls = tuple[np.ndarray, np.ndarray]  # centres (n, 3) and radii (n,), mm
 NO_FORCE = vector((0.0, 0.0, 0.0))
 RUPTURE = "raise soil.E_MPa (250 times the stress on the tip keeps overlaps small), or exchange more often"
 
@@ -90,25 +90,6 @@ def make_sample(recipe: dict[str, Any], path: Path, progress: Callable[[str], No
     return meta
 
 
-def grains_from_file(path: str) -> tuple[np.ndarray, np.ndarray]:
-    """Centres (n, 3) and radii (n,) from a CSV with the columns x_mm, y_mm, z_mm, radius_mm."""
-    columns = ("x_mm", "y_mm", "z_mm", "radius_mm")
-    try:
-        with open(path, newline="") as file:
-            rows = [[float(row[name]) for name in columns] for row in csv.DictReader(file)]
-    except (OSError, KeyError, TypeError, ValueError) as error:
-        raise Refused(
-            f"the grains can't be read: {error!r}",
-            file=path,
-            allowed="CSV with the columns " + ", ".join(columns),
-            remedy="correct the file",
-        ) from None
-    table = np.array(rows).reshape(-1, 4)
-    if not np.isfinite(table).all() or (table[:, 3] <= 0.0).any():
-        raise Refused("a grain has a radius that is not positive, or a number is not finite", file=path, remedy="correct the file")
-    return table[:, :3], table[:, 3]
-
-
 class Soil:
     """The state on this side. `start` holds density_N_h2_mm4, root_speed_mm_h, root_diameter_mm."""
 
@@ -125,15 +106,17 @@ class Soil:
 
     # ---- beginning ------------------------------------------------------------------------------
 
-    def build(self, sample: Path | None, body_mm: np.ndarray, body_radius_mm: np.ndarray) -> None:
-        """Grains from the sample or the recipe's file; the root comes with the first interval."""
+    def build(self, sample: Path | None, listed: Balls, body: Balls) -> None:
+        """Grains from the sample or as listed; the root, which fills `body`, comes with the first interval."""
         recipe, density = self.recipe, self.start["density_N_h2_mm4"]
         O.reset()
         if sample is not None:
             meta, data = read_soil_file(sample, "sample", VERSION)
             if meta["recipe"] != recipe["packing_key"]:
                 raise Refused(
-                    "the sample was packed for another recipe", file=str(sample), remedy="delete the file; the next run packs anew"
+                    "the sample was packed for another recipe",
+                    file=str(sample),
+                    remedy="delete the file; the next run packs anew",
                 )
             unarchive(data)
             self.wall_ids, self.obstacle_ids = meta["wall_ids"], meta["obstacle_ids"]
@@ -141,17 +124,33 @@ class Soil:
             make_materials(recipe, density)
             self.wall_ids = add_walls(recipe)
             self.obstacle_ids = add_obstacles(recipe)
-            for centre, radius in zip(*grains_from_file(recipe["grains_file"])):
+            self._check_obstacles_among(*listed)
+            for centre, radius in zip(*listed):
                 O.bodies.append(add_grain(recipe, centre, radius))
         self._set_materials(density)
         self._carve_gaps()
-        self.body = (np.array(body_mm), np.array(body_radius_mm))
+        self.body = body
         O.engines = self._engines()
         O.dt = self._substep()
         check_functors(recipe)
         if recipe["cohesion_MPa"] > 0.0:
             bond_grains_in_touch()
         self._rebind()
+
+    def _check_obstacles_among(self, centre: np.ndarray, radius: np.ndarray) -> None:
+        """Refused: a listed grain lies in an obstacle. The other checks of listed grains are the program's."""
+        for obstacle in self.recipe["obstacles"]:
+            if obstacle["shape"] == "gap":
+                continue
+            hit = np.flatnonzero(inside_obstacle(self.recipe, obstacle, centre, OVERLAP_AT_MOST * radius))
+            if len(hit):
+                raise Refused(
+                    f"{len(hit)} of the listed grains lie in the obstacle '{obstacle['name']}'",
+                    key="soil.grains_file",
+                    given="the first one at ({:g}, {:g}, {:g}) mm".format(*centre[hit[0]]),
+                    allowed=f"at most {100 * OVERLAP_AT_MOST:.0f} % of a radius may reach into it",
+                    remedy="leave these grains out of the file, or move the obstacle",
+                )
 
     def _set_materials(self, density: float) -> None:
         """A sample is packed without knowing the root: density, cohesion and the root's friction come now."""
@@ -197,7 +196,7 @@ class Soil:
     def _engines(self) -> list[Any]:
         recipe = self.recipe
         engines = [wrapper.ForceResetter(), *contact_engines(recipe)]
-        if recipe["walls"] != "rigid" or not recipe["grains_file"]:
+        if recipe["walls"] != "rigid" or not recipe["listed_grains"]:
             pressure = recipe["confining_pressure_MPa"]
             flat = recipe["dimension"] == 2
             engines.append(
@@ -302,7 +301,9 @@ class Soil:
         removed = self._erase(overlaps) if len(body_mm) else 0
         if before > 0 and removed == before:
             raise Refused(
-                "the root leaves no room for a single grain", key="soil.box_to_mm", remedy="take a wider box or smaller grains"
+                "the root leaves no room for a single grain",
+                key="soil.box_to_mm",
+                remedy="take a wider box or smaller grains",
             )
         for k, marker in enumerate(ids):
             self._insert(marker, start[k], radius[k])
@@ -315,7 +316,8 @@ class Soil:
             for _ in range(SETTLE_STEPS):
                 O.step()
             unbalanced = utils.unbalancedForce()
-            self.progress(f"settling around the root: unbalanced {unbalanced:.3f}")
+            state = f"unbalanced {unbalanced:.3f}" if isfinite(unbalanced) else "nothing touches"
+            self.progress(f"settling around the root: {state}")
             if not isfinite(unbalanced) or unbalanced < SETTLED:
                 break
         if self.recipe["walls"] == "rigid":  # making room has cost pressure; from now on they stand still
@@ -328,7 +330,11 @@ class Soil:
     # ---- an interval ----------------------------------------------------------------------------
 
     def advance(
-        self, interval: int, duration_h: float, motion: dict[str, np.ndarray], forces: Callable[[], dict[str, np.ndarray]]
+        self,
+        interval: int,
+        duration_h: float,
+        motion: dict[str, np.ndarray],
+        forces: Callable[[], dict[str, np.ndarray]],
     ) -> dict[str, float]:
         """Moves the root through one interval and fills in the mean force on every marker. Returns the numbers.
 
@@ -492,7 +498,11 @@ class Soil:
         """Takes up the state of a file that save() wrote, of the same recipe."""
         meta, data = read_soil_file(path, "checkpoint", VERSION)
         if meta["recipe"] != self.recipe:
-            raise Refused("the soil's checkpoint belongs to another soil", file=str(path), remedy="resume with the scene that began the run")
+            raise Refused(
+                "the soil's checkpoint belongs to another soil",
+                file=str(path),
+                remedy="resume with the scene that began the run",
+            )
         unarchive(data)
         self.start = meta["start"]
         self.wall_ids, self.obstacle_ids = meta["wall_ids"], meta["obstacle_ids"]

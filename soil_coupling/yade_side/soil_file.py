@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Files that hold a soil: a packed sample, or a checkpoint.
 
-A first line that names the format, a second line of JSON (what it is, of which YADE, how long, its SHA-256), then YADE's
-own archive, compressed. A file is there as a whole or not at all.
+A first line that names the format, a second line of JSON (what it is, of which YADE, how long, its SHA-256), then
+YADE's own archive, compressed. A file is there as a whole or not at all.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ REMEDY = {
 class Refused(Exception):
     """Something that the user gave is wrong; becomes the program's message about wrong input."""
 
-    def __init__(self, what: str, *, key: str = "", file: str = "", given: str = "", allowed: str = "", remedy: str = ""):
+    def __init__(
+        self, what: str, *, key: str = "", file: str = "", given: str = "", allowed: str = "", remedy: str = ""
+    ):
         super().__init__(what)
         self.parts = {"what": what, "key": key, "file": file, "given": given, "allowed": allowed, "remedy": remedy}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""README.md and ARCHITECTURE.md speak of what exists, and of all of it."""
+"""README.md, ARCHITECTURE.md and the developer guide speak of what exists, and of all of it."""
 
 from __future__ import annotations
 
@@ -63,12 +63,12 @@ def test_readme_lists_the_scenes():
     assert sorted(named) == [scene.stem for scene in SCENES]
 
 
-@pytest.mark.parametrize("document", ["README.md", "ARCHITECTURE.md"])
+@pytest.mark.parametrize("document", ["README.md", "ARCHITECTURE.md", "docs/developer_guide.md"])
 def test_named_files_exist(document: str):
     """Every file and folder that the document names exists, and nothing is left to be filled in."""
     text = (PROJECT / document).read_text()
     folders = "root_sph|soil_coupling|scenarios|tests|tools|docs"
-    links = re.findall(r"\]\(([^)#:]+)\)", text)
+    links = re.findall(r"\]\(([^)#:]+)\)", re.sub(r"```.*?```", "", text, flags=re.S))  # `[this](...) {` is no link
     paths = re.findall(rf"(?<![\w/])((?:{folders})/[\w./-]*\w)", text)
     short = {f"root_sph/{name}" for name in re.findall(rf"`((?!{folders})\w+/\w+)`", text)}
     named = {name for name in [*links, *paths, *short] if "NAME" not in name}
@@ -77,6 +77,7 @@ def test_named_files_exist(document: str):
         name
         for name in sorted(named)
         if not (PROJECT / name).exists()
+        and not (PROJECT / document).parent.joinpath(name).exists()
         and not list(PROJECT.glob(f"{name}.*"))
         and not list(PROJECT.glob(f"{name}-*"))  # decisions are named by their numbers
     ]
@@ -90,3 +91,30 @@ def test_the_architecture_names_every_folder():
     for folder in (PROJECT / "root_sph").iterdir():
         if any(folder.glob("*.hpp")):
             assert re.search(rf"^  {folder.name}/ ", text, re.M), folder.name
+
+
+def passes_of_hooks() -> list[str]:
+    """The phases of root_sph/dynamics/hooks.hpp, in their order."""
+    text = (PROJECT / "root_sph" / "dynamics" / "hooks.hpp").read_text()
+    return re.findall(r"^  Passes<.*> (\w+);", text, re.M)
+
+
+def test_the_architecture_names_every_phase_in_order():
+    """ARCHITECTURE.md's table of a window goes through the phases of the hooks as the solver does."""
+    named = re.findall(r"`hooks\.(\w+)`", (PROJECT / "ARCHITECTURE.md").read_text())
+    assert named == passes_of_hooks() and len(named) > 10
+
+
+def without_spaces(text: str) -> str:
+    """The text as it is however it is broken into lines."""
+    return re.sub(r"\s", "", text)
+
+
+def test_the_guides_code_is_the_codes():
+    """What the developer guide quotes of effects stands in their folders, but for what it leaves out with dots."""
+    guide = (PROJECT / "docs" / "developer_guide.md").read_text().split("\n## Add a law")[0]
+    folders = (PROJECT / "root_sph" / "effects" / name for name in ("gravity", "force"))
+    source = "".join(path.read_text() for folder in folders for path in sorted(folder.iterdir()))
+    quoted = [part for block in re.findall(r"```cpp\n(.*?)```", guide, re.S) for part in block.split("...")]
+    assert len(quoted) > 5
+    assert [part for part in quoted if without_spaces(part) not in without_spaces(source)] == []

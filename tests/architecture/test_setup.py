@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tools/setup.sh installs what the tree includes, finds and imports, and nothing else."""
+"""tools/setup.sh installs what the tree includes, finds and imports, and nothing else; by default what a run needs."""
 
 from __future__ import annotations
 
@@ -50,60 +50,76 @@ def tracked(*patterns: str) -> list[Path]:
     return [path for name in listed if (path := PROJECT / name).is_file()]
 
 
-def installed() -> set[str]:
-    """The packages that tools/setup.sh lists."""
+def is_test(path: Path) -> bool:
+    return path.relative_to(PROJECT).parts[0] == "tests"
+
+
+def listed(name: str) -> set[str]:
+    """The packages of a list in tools/setup.sh."""
     text = (PROJECT / "tools" / "setup.sh").read_text()
-    lines = [line for part in text.split('packages="\n')[1:] for line in part.split('"\n', 1)[0].splitlines()]
-    return {line.split()[0] for line in lines}
+    found = re.search(rf'^{name}="\n(.*?)"', text, re.M | re.S)
+    assert found, f"tools/setup.sh has no list {name}"
+    return {line.split()[0] for line in found[1].splitlines()}
 
 
-def headers() -> set[str]:
+def headers(files: list[Path]) -> set[str]:
     """The first part of every header in angle brackets that is not of the C++ library (those have no dot or slash)."""
     names = set()
-    for file in tracked("*.cpp", "*.hpp"):
-        names |= set(re.findall(r"^\s*#include <([^>]+)>", file.read_text(), re.M))
-    return {name.split("/")[0] for name in names if "/" in name or "." in name} - {"root_sph", "soil_coupling", "tests"}
+    for file in files:
+        if file.suffix in (".cpp", ".hpp"):
+            names |= set(re.findall(r"^\s*#include <([^>]+)>", file.read_text(), re.M))
+    first = {name.split("/")[0] for name in names if "/" in name or "." in name}
+    return first - {"root_sph", "soil_coupling", "tests"} - POSIX
 
 
-def cmake_packages() -> set[str]:
+def cmake_packages(files: list[Path]) -> set[str]:
     """Every find_package."""
-    text = "".join(file.read_text() for file in tracked("CMakeLists.txt", "*/CMakeLists.txt", "*.cmake"))
-    return set(re.findall(r"find_package\((\w+)", text))
+    text = "".join(file.read_text() for file in files if file.name == "CMakeLists.txt" or file.suffix == ".cmake")
+    return set(re.findall(r"find_package\((\w+)", text)) - WITH_CMAKE
 
 
-def python_modules() -> set[str]:
+def python_modules(files: list[Path]) -> set[str]:
     """Every module that is imported and neither Python's own nor the project's."""
     names: set[str] = set()
-    files = tracked("*.py")
     for file in files:
+        if file.suffix != ".py":
+            continue
         for node in ast.walk(ast.parse(file.read_text())):
             if isinstance(node, ast.Import):
                 names |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
                 names.add(node.module.split(".")[0])
-    ours = {file.stem for file in files} | {file.parent.name for file in files}
+    every = tracked("*.py")
+    ours = {file.stem for file in every} | {file.parent.name for file in every}
     return names - set(sys.stdlib_module_names) - ours
 
 
-def providers(kind: int) -> dict[str, str]:
-    """Name: package."""
-    return {name: package for package, provided in PACKAGES.items() for name in provided[kind]}
+def used(in_tests: bool) -> set[str]:
+    """The packages whose headers, CMake packages or Python modules the program and the tools, or the tests, name."""
+    files = [file for file in tracked() if is_test(file) == in_tests]
+    packages: set[str] = set()
+    for kind, names in enumerate((headers(files), cmake_packages(files), python_modules(files))):
+        assert names, "the search finds nothing"
+        for name in names:
+            providers = [package for package, provided in PACKAGES.items() if name in provided[kind]]
+            assert providers, f"{name} comes from no package that this test knows"
+            packages |= set(providers)
+    return packages
 
 
-def test_everything_used_is_installed():
-    """Each header, CMake package and Python module has its package in tools/setup.sh."""
-    listed = installed()
-    for kind, used in enumerate((headers() - POSIX, cmake_packages() - WITH_CMAKE, python_modules())):
-        assert used, "the search finds nothing"
-        for name in used:
-            package = providers(kind).get(name)
-            assert package, f"{name} comes from no package that this test knows"
-            assert package in listed, f"{name} needs {package}, which tools/setup.sh does not install"
+def test_a_run_gets_what_it_needs_and_nothing_else():
+    """The list without options, and --soil, are what the program and the tools name."""
+    plain, soil = listed("packages"), listed("soil_packages")
+    assert not plain & soil
+    assert (plain | soil) - BUILD_TOOLS == used(in_tests=False) - BUILD_TOOLS
 
 
-def test_everything_installed_is_used():
-    """No package is installed for nothing."""
-    used = {providers(0).get(name) for name in headers()}
-    used |= {providers(1).get(name) for name in cmake_packages()}
-    used |= {providers(2).get(name) for name in python_modules()}
-    assert installed() - used - BUILD_TOOLS == set()
+def test_tests_get_what_they_add():
+    """--test is what only the tests name."""
+    assert listed("test_packages") == used(in_tests=True) - used(in_tests=False) - BUILD_TOOLS
+
+
+def test_every_option_has_its_own_list():
+    """What --dev installs, nothing else does."""
+    others = listed("packages") | listed("soil_packages") | listed("test_packages")
+    assert listed("dev_packages") and not listed("dev_packages") & others

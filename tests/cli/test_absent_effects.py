@@ -6,12 +6,25 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from cli_support import FULL, SECTIONS, SMALL, Program, replaced, summary
+from cli_support import FULL, PROJECT, SECTIONS, SMALL, Program, replaced, summary
 
 PROBES = {
     'name = "bin"\ndistance_to_tip_mm = [0.1, 0.2]': set(),
     'name = "cell"\nposition_mm = [0.2, 0.0]': {"probe cell"},  # which cells descend from the one it began with
 }
+EVERY = PROJECT / "tests" / "support" / "every_effect.toml"
+# what a root has that nothing happens to
+ALWAYS_FIELDS = {
+    *("position", "velocity", "volume", "mass", "material_stress", "frame", "shape", "distance_to_tip", "generation"),
+    *("cell_id", "parent_id", "clamped", "velocity_gradient", "deformation", "nominal_force", "force"),
+    *("axial_strain", "window_index"),
+}
+ALWAYS_PHASES = {
+    *("root axis", "neighbours", "gradient operators", "pair terms", "velocity gradients", "material", "forces"),
+}
+# and with inertia
+INERTIA_FIELDS = {"inverse_inertia", "start_velocity"}
+INERTIA_PHASES = {"stability bound", "motion"}
 # section: its name in the list of effects, and what it alone brings
 FIELDS = {
     "anisotropy": ("anisotropy", {"radial_modulus", "stiffness"}),
@@ -47,9 +60,17 @@ def full(program: Program) -> dict[str, Any]:
 
 def test_check_has_its_keys(full: dict[str, Any]):
     """Effects, fields with bytes, pair terms, step, stability, hyperbolicity and time are there for programs."""
-    assert {"cells", "effects", "fields", "pair_terms", "phases", "step_h", "steps", "hyperbolic", "estimated_run_s"} <= (
-        full.keys()
-    )
+    assert {
+        "cells",
+        "effects",
+        "fields",
+        "pair_terms",
+        "phases",
+        "step_h",
+        "steps",
+        "hyperbolic",
+        "estimated_run_s",
+    } <= (full.keys())
     assert full["step_h"] == 0.001 and full["steps"] == 400 and full["hyperbolic"] is True
     assert full["bytes_per_cell"] == sum(field["bytes_per_cell"] for field in full["fields"])
     assert all(field["unit"] and field["kept"] in ("state", "scratch") for field in full["fields"])
@@ -92,15 +113,20 @@ def test_without_one_section(program: Program, full: dict[str, Any], section: st
 
 
 def test_nothing_at_all(program: Program, full: dict[str, Any]):
-    """The smallest scene: of everything that effects bring, nothing is there."""
-    found = program("check", program.scene(SMALL), "--json").json()
-    assert active(found) == {"clamped base"}
-    assert found["pair_terms"] == []
-    for _, fields in FIELDS.values():
-        assert not fields & names(found["fields"])
-    for phases in PHASES.values():
-        assert not phases & set(found["phases"])
-    assert found["bytes_per_pair"] < full["bytes_per_pair"]
+    """The smallest scene: of everything that any effect of the table brings, nothing is there."""
+    every = program("check", EVERY, "--json").json()
+    assert active(every) == names(program("effects", "--json").json()), f"call for it in {EVERY.name}"
+    for stepper in ("quasi_static", "symplectic"):
+        scene = program.scene(SMALL + f'[numerics]\nstepper = "{stepper}"\n')
+        found = program("check", scene, "--json").json()
+        assert names(found["effects"]) == active(every) and active(found) == {"clamped base"}
+        assert found["pair_terms"] == []
+        with_inertia = stepper == "symplectic"
+        assert names(found["fields"]) == ALWAYS_FIELDS | (INERTIA_FIELDS if with_inertia else set())
+        assert set(found["phases"]) == ALWAYS_PHASES | (INERTIA_PHASES if with_inertia else {"balance"})
+        assert ALWAYS_FIELDS | INERTIA_FIELDS < names(every["fields"])
+        assert ALWAYS_PHASES | INERTIA_PHASES < set(every["phases"])
+        assert found["bytes_per_pair"] < full["bytes_per_pair"]
 
 
 @pytest.mark.parametrize("probe", PROBES)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from cli_support import FULL, SECTIONS, SMALL, Done, Program, digest, frames, replaced, same_results
+from cli_support import FULL, PROJECT, SECTIONS, SMALL, Done, Program, digest, frames, replaced, same_results
 
 BAD_INPUT = 2
 FILE_TROUBLE = 5
@@ -22,9 +22,31 @@ def assert_one_message(done: Done, status: int, *parts: str) -> None:
     """One message on stderr with all these parts, and the exit status."""
     assert done.status == status, done.err
     assert done.err.startswith("rootsoil: ") and done.err.count("rootsoil: ") == 1, done.err
-    assert "internal error" not in done.err
+    assert "internal error" not in done.err and "Traceback" not in done.err
+    assert status != FILE_TROUBLE or "\n  to do:   " in done.err, done.err
     for part in parts:
         assert part in done.err, f"'{part}' is not in:\n{done.err}"
+
+
+IN_SPACE = replaced(SMALL, 'name = "small"', "dimension = 3")
+
+SOIL = """
+[numerics]
+stepper = "symplectic"
+
+[soil]
+box_from_mm = [0.05, -1.5]
+box_to_mm = [3.0, 1.5]
+confining_pressure_MPa = 0.1
+d_range_mm = [0.2, 0.3]
+E_MPa = 250.0
+"""
+GROWING_IN_SOIL = SMALL + SECTIONS["pressure"] + SECTIONS["growth"] + SOIL
+
+
+def stone(x_mm: float, y_mm: float, more: str = "") -> str:
+    """A ball in the soil."""
+    return f'[[soil.obstacle]]\nshape = "stone"\nposition_mm = [{x_mm}, {y_mm}]\nradius_mm = 0.3\n{more}'
 
 
 # What is wrong, the scene, and what the message says: line and key, given, allowed or remedy.
@@ -78,6 +100,182 @@ SCENES: dict[str, tuple[str, tuple[str, ...]]] = {
         replaced(SMALL, "cell_size_mm = 0.01", "cell_size_mm = 1e-6"),
         ("scene.toml:8: root.cell_size_mm: ", "given:   1e-06", "are all lengths in mm?"),
     ),
+    "division threshold in metres": (
+        SMALL + SECTIONS["division"].replace("0.011", "1.1e-5"),
+        ("scene.toml:17: division.l0_mm: ", "would divide into some", "given:   l0_mm = 1.1e-05", "is l0_mm in mm?"),
+    ),
+    "obstacle in the root": (
+        SMALL + '[[obstacle]]\nshape = "disc"\nposition_mm = [0.05, 0.0]\nradius_mm = 0.01\n',
+        (
+            'scene.toml:17: obstacle[1].position_mm: the obstacle "obstacle_1" (disc) overlaps the root at the start',
+            "given:   4 of 50 cells reach into it; the deepest, at (0.055, -0.005) mm, 0.00793 mm, 0.79 of its width",
+            "allowed: a root that touches it: no cell deeper than 0.2 of its width",
+        ),
+    ),
+    "plane that faces away": (
+        SMALL + '[[obstacle]]\nshape = "plane"\nposition_mm = [0.2, 0.0]\nangle_deg = -90\n',
+        ("obstacle[1].position_mm: ", "50 of 50 cells reach into it", "a plane's normal towards the root?"),
+    ),
+    "box beside the clamp": (
+        SMALL + '[[obstacle]]\nshape = "box"\nposition_mm = [-0.05, 0.0]\nhalf_size_mm = [0.04, 0.05]\n',
+        ("obstacle[1].position_mm: ", "8 of 50 cells reach into it"),
+    ),
+    "disc smaller than a cell": (
+        SMALL + '[[obstacle]]\nshape = "disc"\nposition_mm = [0.2, 0.0]\nradius_mm = 0.004\n',
+        (
+            'obstacle[1].radius_mm: the obstacle "obstacle_1" (disc) is smaller than a cell',
+            "given:   0.004 mm; cells are 0.01 mm large",
+            "allowed: at least half a cell, 0.005 mm",
+        ),
+    ),
+    "box smaller than a cell, between the root's cells": (
+        SMALL + '[[obstacle]]\nshape = "box"\nposition_mm = [0.05, 0.0]\nhalf_size_mm = [0.02, 0.001]\n',
+        ("scene.toml:18: obstacle[1].half_size_mm: ", "(box) is smaller than a cell", "given:   0.001 mm"),
+    ),
+    "sphere between the root's cells": (
+        IN_SPACE + '[[obstacle]]\nshape = "sphere"\nposition_mm = [0.05, 0.0, 0.0]\nradius_mm = 0.0052\n',
+        (
+            "overlaps the root at the start",
+            "its centre (0.05, 0, 0) mm lies in the tissue, 0.87 cell lengths from a cell",
+        ),
+    ),
+    "normal too short": (
+        SMALL + '[[obstacle]]\nshape = "plane"\nposition_mm = [0.2, 0.0]\nnormal = [-1e-200, 0]\n',
+        ("obstacle[1].normal: the normal is too short", "given:   [-1e-200, 0.0]\n", "a vector longer than 1e-12"),
+    ),
+    "probe far away": (
+        SMALL + "[[probe]]\nposition_mm = [50, 50]\n",
+        (
+            'scene.toml:16: probe[1].position_mm: there is no cell near the probe "probe_1"',
+            "given:   (50, 50) mm: the nearest cell is at (0.085, 0.015) mm, 70.6 mm away",
+            "allowed: a point at most 3 cell lengths from a cell",
+        ),
+    ),
+    "bin of a probe beyond the root": (
+        SMALL + "[[probe]]\ndistance_to_tip_mm = [5, 6]\n",
+        ("probe[1].distance_to_tip_mm: there is no cell", "given:   [5.0, 6.0]", "mm: the root does not grow"),
+    ),
+    "bin of a probe that growth does not reach": (
+        SMALL + SECTIONS["pressure"] + SECTIONS["growth"] + "[[probe]]\ndistance_to_tip_mm = [5, 6]\n",
+        ("probe[1].distance_to_tip_mm: ", "allowed: 0 to 0.125 mm now, ", "when the root has grown for 0.2 h"),
+    ),
+    "bin of a probe between cells": (
+        SMALL + "[[probe]]\ndistance_to_tip_mm = [0.051, 0.052]\n",
+        ("probe[1].distance_to_tip_mm: ", "make the bin wider than a cell"),
+    ),
+    "force on nothing": (
+        SMALL + "[force]\naxial_N = 0.01\ndistance_to_tip_mm = [5, 6]\n",
+        (
+            "scene.toml:17: force.distance_to_tip_mm: the force has nothing to act on",
+            "given:   [5.0, 6.0]",
+            "allowed: a band within 0 to 0.095 mm",
+        ),
+    ),
+    "force on the clamp": (
+        SMALL + "[force]\naxial_N = 0.01\ndistance_to_tip_mm = [0.1, 0.2]\n",
+        ("force.distance_to_tip_mm: ", "no cell that can move is in its band"),
+    ),
+    "kernel that reaches no cell": (
+        SMALL + '[numerics]\nkernel = "isotropic"\nH_bar = 0.1\n',
+        (
+            "scene.toml:17: numerics.H_bar: the kernel reaches too few cells",
+            "given:   0.1: it reaches 0.283 cell lengths; half of the cells have 0 partners or fewer",
+            "allowed: at least 3 partners for most cells",
+            "the paper takes 2 to 8",
+        ),
+    ),
+    "kernel that reaches to the next cell's centre, where it is zero": (
+        IN_SPACE + "[numerics]\neta = 0.5\n",
+        (
+            "numerics.eta: the kernel reaches too few cells",
+            "have 0 partners or fewer",
+            "allowed: at least 4 partners",
+            "1.3 to 1.5",
+        ),
+    ),
+    "time beyond measure": (
+        SMALL + "[pressure]\ntable = [[-1e308, 1], [1e308, 0.5]]\n",
+        (
+            "scene.toml:16: pressure.table: the time is outside its range",
+            "given:   -1e+308",
+            "times from -1e+06 to 1e+06 h",
+            "are these seconds?",
+        ),
+    ),
+    "time of a force beyond measure": (
+        SMALL + "[force]\naxial_N = 0.01\ntable = [[0, 1], [2e6, 0.5]]\n",
+        ("force.table: the time is outside its range", "given:   2000000"),
+    ),
+    "a number that the machine hardly knows": (
+        SMALL + SECTIONS["pressure"] + SECTIONS["growth"].replace("0.15", "1e-320"),
+        ("growth.s_g_mm: the value is too small to compute with", "give at least 1e-300"),
+    ),
+    "stones that overlap": (
+        SMALL + SOIL + stone(1.0, 0.6) + stone(1.2, 0.7),
+        (
+            "soil.obstacle[2].position_mm: 'soil.obstacle_1' and 'soil.obstacle_2' overlap",
+            "only fixed boxes and plates may overlap",
+        ),
+    ),
+    "movable stone in a box": (
+        SMALL
+        + SOIL
+        + stone(1.0, 0.6, "movable = true\n")
+        + '[[soil.obstacle]]\nshape = "box"\nposition_mm = [1.4, 0.6]\nhalf_size_mm = [0.2, 0.2]\n',
+        ("'soil.obstacle_1' and 'soil.obstacle_2' overlap", "'soil.obstacle_1' reaches 0.1 mm into"),
+    ),
+    "inertial number of nothing": (
+        GROWING_IN_SOIL + "inertial_number_max = 1e-300\n",
+        ("soil.inertial_number_max: ", "given:   1e-300", "allowed: a number at least 1e-06"),
+    ),
+    "substeps without end": (
+        GROWING_IN_SOIL + "inertial_number_max = 1e-6\nstep_safety = 1e-3\n",
+        (
+            "soil.step_safety: the grains would take ",
+            "allowed: at most 1e+05 substeps; step_safety is usually 0.5",
+            "raise inertial_number_max",
+        ),
+    ),
+    "density of real grains": (
+        SMALL + SOIL + "density_N_h2_mm4 = 2e-16\n",
+        ("soil.density_N_h2_mm4: the grains would take ", "leave density_N_h2_mm4 out"),
+    ),
+    "density beyond measure": (
+        SMALL + SOIL + "density_N_h2_mm4 = 1e308\n",
+        ("soil.density_N_h2_mm4: the value is outside its range", "at least 1e-20, at most 1000"),
+    ),
+    "frames that fill the disk": (
+        replaced(SMALL, "every_h = 0.1", "every_h = 1e-18"),
+        (
+            "scene.toml:14: output.every_h: 2.0e+17 frames would fill",
+            "given:   1e-18",
+            "at least 2e-07 h: 1e+06 frames",
+        ),
+    ),
+    "step too short": (
+        SMALL + "[numerics]\nstep_h = 1e-19\n",
+        ("scene.toml:16: numerics.step_h: the step is too short", "given:   steps of 1e-19 h", "at least 1e-09 h"),
+    ),
+    "steps without end": (
+        replaced(SMALL, "duration_h = 0.2", "duration_h = 1e4") + "[numerics]\nstep_h = 2e-9\n",
+        ("numerics.step_h: the run would take 5.0e+12 steps", "at most 1e+12 of them", "take a longer step"),
+    ),
+    "duration too short": (
+        replaced(replaced(SMALL, "duration_h = 0.2", "duration_h = 1e-300"), "every_h = 0.1", "every_h = 1e-300"),
+        ("output.every_h: the step is too short", "run for longer"),
+    ),
+    "growth without measure": (
+        SMALL + SECTIONS["pressure"] + SECTIONS["growth"].replace("1.3e6", "1e300"),
+        ("growth: the step is too short", "give numerics.step_h"),
+    ),
+    "sleep that looks never": (
+        SMALL + "[sleep]\nmean_over_h = 1e300\n",
+        ("scene.toml:16: sleep.mean_over_h: ", "at most 10000"),
+    ),
+    "torn lattice": (
+        replaced(SMALL, "cell_size_mm = 0.01", "cell_size_mm = 0.01\njitter = 0.5\nsize_variation = 0.95"),
+        ("scene.toml:10: root.size_variation: ", "lower curvature, size_variation or jitter"),
+    ),
     "soil": (SMALL + "\n[soil]\n", ("scene.toml:16: soil.box_from_mm: this key is missing", "Corner of the box")),
     "no such cell file": (
         replaced(SMALL, 'name = "small"', "dimension = 3").replace(
@@ -88,7 +286,12 @@ SCENES: dict[str, tuple[str, tuple[str, ...]]] = {
     "hyperbolicity": (
         replaced(SMALL, "1020.0", '1020.0\nlaw = "pressure_deviator"')
         + replaced(SECTIONS["anisotropy"], "12000.0", "15300.0"),
-        ("scene.toml:12: tissue.law: the law is not hyperbolic", "E_R/E_A", "below about 4", 'law = "elastic_growth"'),
+        (
+            "scene.toml:12: tissue.law: the law is not hyperbolic",
+            "E_R/E_A",
+            "E_R/E_A below 2.7",
+            'law = "elastic_growth"',
+        ),
     ),
 }
 
@@ -104,6 +307,69 @@ def test_scene(program: Program, name: str):
     assert not (program.folder / "out").exists()
 
 
+CELLS_HEADER = "Label,pos.X (um),pos.Y (um),pos.Z (um),e1.X,e1.Y,e1.Z,e2.X,e2.Y,e2.Z,r1 (um),r2 (um),r3 (um)\n"
+
+
+def cell_row(label: int, x: float, y: float, r: float = 5.0, z: float = 0.0) -> str:
+    """A ball."""
+    return f"{label},{x},{y},{z},1,0,0,0,1,0,{r},{r},{r}\n"
+
+
+TWO_ROWS = [cell_row(k, 10 * (k // 2), 10 * (k % 2)) for k in range(1, 61)]
+
+# What is wrong, the rows, and what the message says.
+NO_TISSUE: dict[str, tuple[list[str], tuple[str, ...]]] = {
+    "stray cell": (
+        [*TWO_ROWS, cell_row(99, 5000, 0)],
+        (
+            "cells.csv:62: root.cells_file: 1 of 61 cells lies apart",
+            "cell 99 (line 62) is 4.7 mm from the next, cell 60",
+        ),
+    ),
+    "cell 10 m away": ([*TWO_ROWS, cell_row(99, 0, -1e7)], ("cell 99 (line 62) is 1e+04 mm from the next",)),
+    "cell given twice": (
+        [*TWO_ROWS, cell_row(99, 100, 0.5)],
+        (
+            "cells.csv:62: ",
+            "cells lie in one place: cell 20 (line 21) and cell 99 (line 62)",
+            "centres 0.0005 mm apart",
+        ),
+    ),
+    "speck": ([*TWO_ROWS, cell_row(99, 105, 5, 0.4)], ("1 of 61 cells lies apart", "specks")),
+    "speck of nearly no size": ([*TWO_ROWS, cell_row(99, 105, 5, 0.001)], ("cells.csv:62: cell 99 is out of prop",)),
+    "cells of nearly no size": (
+        [cell_row(k, 10 * (k // 2), 10 * (k % 2), 0.001) for k in range(60)],
+        ("apart from the others", "0.01 mm from the next", "all in um?"),
+    ),
+    "diameters": (
+        [
+            cell_row(100 * i + 10 * j + k, 10 * i, 10 * j, 10.0, 10 * k)
+            for i in range(12)
+            for j in range(5)
+            for k in range(5)
+        ],
+        ("the cells overlap", "semi-axes, not diameters"),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", NO_TISSUE)
+def test_cells_that_are_no_tissue(program: Program, name: str):
+    """Cells that are no tissue: named with label, line and distance, at once."""
+    rows, parts = NO_TISSUE[name]
+    (program.folder / "cells.csv").write_text(CELLS_HEADER + "".join(rows))
+    scene = program.scene(
+        replaced(SMALL, 'name = "small"', "dimension = 3").replace(
+            "length_mm = 0.1\nradius_mm = 0.02\ncell_size_mm = 0.01", 'cells_file = "cells.csv"'
+        )
+        + SECTIONS["pressure"]
+        + SECTIONS["growth"]
+    )
+    assert_one_message(program("check", scene), BAD_INPUT, *parts)
+    assert_one_message(program("run", scene, "--out", "out"), BAD_INPUT, *parts)
+    assert not (program.folder / "out").exists()
+
+
 def test_hyperbolicity_lost_at_the_ratio_of_the_paper(program: Program):
     """E_R/E_A = 15 is named, and scene.allow_unstable is a way to go on."""
     text, _ = SCENES["hyperbolicity"]
@@ -115,8 +381,50 @@ def test_hyperbolicity_lost_at_the_ratio_of_the_paper(program: Program):
 def test_scene_file_missing(program: Program):
     """No file, or a folder in its place."""
     assert_one_message(program("run", "none.toml"), BAD_INPUT, "none.toml: there is no such scene file", "to do: ")
+    for given in ("case1_isotropc", "Case1_isotropic.toml", "scenes/case1_isotropi.toml"):
+        for command in ("run", "check"):
+            assert_one_message(
+                program(command, given),
+                BAD_INPUT,
+                f"{given}: there is no such scene file",
+                "scenarios: case1_anisotropic, case1_balanced, ",
+                "did you mean case1_isotropic?",
+            )
     assert_one_message(program("run", "."), BAD_INPUT, "this is a folder", "to do: ")
     assert list(program.folder.iterdir()) == []
+
+
+def test_what_is_not_refused(program: Program):
+    """The limits' other side: two cells across with a kernel that reaches the next ones, a stone let into a fixed box,
+    an obstacle as large as a cell that the root touches, a probe in front of the root."""
+    two_across = SMALL.replace("radius_mm = 0.02", "radius_mm = 0.01") + "[numerics]\neta = 0.75\n"
+    box = '[[soil.obstacle]]\nshape = "box"\nposition_mm = [1.4, 0.6]\nhalf_size_mm = [0.2, 0.2]\n'
+    disc = '[[obstacle]]\nshape = "disc"\nposition_mm = [0.1045, 0.0]\nradius_mm = 0.005\n'
+    ahead = "[[probe]]\nposition_mm = [0.115, 0.0]\n[[probe]]\ndistance_to_tip_mm = [0.05, 60]\n"
+    for text in (two_across, SMALL + SOIL + stone(1.0, 0.6) + box, SMALL + disc, SMALL + ahead):
+        done = program("check", program.scene(text))
+        assert done.status == 0, done.err
+
+
+def test_check_says_when_it_takes_long(program: Program):
+    """What check does with very many cells, before it does it; nothing where it is quick."""
+    many = SMALL.replace("cell_size_mm = 0.01", "cell_size_mm = 1.8e-4")
+    done = program("check", program.scene(many))
+    assert done.status == 0
+    assert done.err == "check makes all 0.12 million cells to see what a run costs: some 4 s, and 0.26 GB of memory\n"
+    assert program("check", program.scene(SMALL)).err == ""
+
+
+def test_soil_alone(program: Program):
+    """A file for the penetrometer is no scene, and the message says what it is for."""
+    for file in sorted((PROJECT / "scenarios" / "soils").glob("*.toml")):
+        for command in ("run", "check"):
+            assert_one_message(
+                program(command, file),
+                BAD_INPUT,
+                f"{file}: section [root] is missing: the file describes a soil alone",
+                "rootsoil penetrometer takes such a file",
+            )
 
 
 def test_override(program: Program):
@@ -127,10 +435,20 @@ def test_override(program: Program):
     assert_one_message(
         program("check", scene, "--accuracy", "best"), BAD_INPUT, "--accuracy", "fast, balanced, reference"
     )
+    # of two keys that do not go together, the one to blame
+    duration, frames_ = ("--set", "scene.duration_h=0.05"), ("--set", "output.every_h=0.3")
+    assert_one_message(
+        program("check", scene, *duration),
+        BAD_INPUT,
+        "from --set: scene.duration_h: the run would end before its first frame",
+        "given:   0.05",
+        "at least output.every_h = 0.1",
+    )
+    assert_one_message(program("check", scene, *frames_), BAD_INPUT, "from --set: output.every_h: the first frame")
 
 
 def test_command_line(program: Program):
-    """Mistakes in the command line name what was given."""
+    """Mistakes in the command line, and in the environment that it replaces, name what was given."""
     scene = program.scene(SMALL)
     assert_one_message(program(), BAD_INPUT, "subcommand", "--help")
     assert_one_message(program("rnu", scene), BAD_INPUT, "rnu", "did you mean run?")
@@ -142,15 +460,27 @@ def test_command_line(program: Program):
         )
     for until in ("0", "-1", "nan", "soon"):
         assert_one_message(program("run", scene, f"--until={until}"), BAD_INPUT, f"{until} is not a number above 0")
+    for threads in ("257", "5000", "100000", "4294967295"):
+        program.environment["OMP_NUM_THREADS"] = threads
+        for command in ("run", "check"):
+            assert_one_message(
+                program(command, scene), BAD_INPUT, "OMP_NUM_THREADS: ", f"given:   {threads}", "allowed: 1 to 256"
+            )
+    for threads in ("0", "-3", "abc", ""):
+        program.environment["OMP_NUM_THREADS"] = threads
+        done = program("check", scene)  # OpenMP itself says something before us
+        assert done.status == BAD_INPUT
+        assert "OMP_NUM_THREADS: the environment asks for a number of threads that no machine has" in done.err
+        assert f"given:   {threads or 'nothing'}\n  allowed: 1 to 256" in done.err
+    assert program("run", scene, "--threads", "1", "--out", "own").status == 0  # the command line decides
+    program.environment["OMP_NUM_THREADS"] = "1"
     assert_one_message(program("describe", "grwth"), BAD_INPUT, "grwth", "did you mean growth?")
     assert not (program.folder / "runs").exists()
 
 
 # ---- cell files -----------------------------------------------------------------------------------
 
-HEADER = (
-    "Label, pos.X (um), pos.Y (um), pos.Z (um), e1.X, e1.Y, e1.Z, e2.X, e2.Y, e2.Z, r1 (um), r2 (um), r3 (um)\n"
-)
+HEADER = "Label, pos.X (um), pos.Y (um), pos.Z (um), e1.X, e1.Y, e1.Z, e2.X, e2.Y, e2.Z, r1 (um), r2 (um), r3 (um)\n"
 ROWS = [f"{n}, {10 * n}, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5\n" for n in range(1, 9)]
 CELLS_SCENE = SCENES["no such cell file"][0].replace("none.csv", "cells.csv")
 

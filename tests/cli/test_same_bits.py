@@ -4,13 +4,28 @@
 from __future__ import annotations
 
 import random
+import re
 import signal
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-from cli_support import FULL, SLEEPING, SMALL, Program, checkpoint, frames, history, same_bits, same_results, summary
+from cli_support import (
+    BALANCED,
+    FULL,
+    SECTIONS,
+    SLEEPING,
+    SMALL,
+    Program,
+    checkpoint,
+    frames,
+    history,
+    replaced,
+    same_bits,
+    same_results,
+    summary,
+)
 
 
 def test_the_scene_has_it_all(full_run: Path):
@@ -45,18 +60,72 @@ def test_pauses_at_awkward_times(program: Program, full_run: Path):
     same_results(out, full_run)
 
 
-def test_pauses_while_the_root_sleeps(program: Program):
-    """Before it falls asleep, asleep, and between the step of pressure and its waking."""
-    scene = program.scene(SLEEPING)
+def test_a_pause_leaves_a_last_frame(program: Program, full_run: Path):
+    """Where a run pauses it writes a frame and a row, which are gone when it goes on; a session without a window of its
+    own leaves all as it is."""
+    scene, out = program.scene(FULL + "picture = true\n"), program.folder / "out"
+    assert program("run", scene, "--out", out, "--until", 0.137).status == 0
+    paused = summary(out)
+    assert paused["status"] == "paused" and 0.137 <= paused["time_h"] < 0.15
+    assert [float(frame["time_h"]) for frame in frames(out)] == [0.0, 0.1, paused["time_h"]]
+    assert [row["time_h"] for row in history(out)] == [0.0, 0.1, paused["time_h"]]
+    assert frames(out)[-1]["step"] == paused["steps"] and np.all(np.abs(frames(out)[-1]["axial_strain_rate"]) < 5.0)
+    assert np.any(frames(out)[-1]["axial_strain_rate"] > 0.1)
+    assert (out / "overview.png").stat().st_size > 10_000
+    quiet = ("--resume", "--set", "output.picture=false")
+    before = frames(out)
+    assert program("run", scene, "--out", out, "--until", 0.12, *quiet).status == 0
+    for frame, expected in zip(frames(out), before, strict=True):
+        same_bits(frame, expected)
+    assert program("run", scene, "--out", out, "--until", 0.3, *quiet).status == 0
+    assert [float(frame["time_h"]) for frame in frames(out)] == [0.0, 0.1, 0.2, 0.3]
+    assert program("run", scene, "--out", out, *quiet).status == 0
+    same_results(out, full_run)
+
+
+@pytest.mark.parametrize("numerics", ['stepper = "symplectic"\nstep_h = 2e-4', "step_h = 0.01"])
+def test_pauses_while_the_root_sleeps(program: Program, numerics: str):
+    """Before it falls asleep, asleep, and between the step of pressure and its waking; with inertia and without."""
+    scene = program.scene(replaced(SLEEPING, 'stepper = "symplectic"\nstep_h = 2e-4', numerics))
     assert program("run", scene, "--out", "whole").status == 0
-    resting = [row["cells_at_rest"] for row in history(program.folder / "whole")]
-    assert max(resting) > 100 and history(program.folder / "whole")[-1]["times_woken"] == 1
+    rows = history(program.folder / "whole")
+    woken = rows[-1]["times_woken"]
+    assert max(row["cells_at_rest"] for row in rows) > 100 and (woken == 1 if "symplectic" in numerics else woken >= 1)
     resume: list[str] = []
     for until in (0.19, 0.2, 0.31, 0.45, 0.46, 0.47):
         assert program("run", scene, "--out", "out", "--until", until, *resume).status == 0
         resume = ["--resume"]
     assert program("run", scene, "--out", "out", "--resume").status == 0
     same_results(program.folder / "out", program.folder / "whole")
+
+
+def test_without_inertia_too(program: Program):
+    """Steps that end in balance: the same for two threads, and after pauses, a signal and kills."""
+    scene = program.scene(BALANCED)
+    assert program("run", scene, "--out", "whole", "--threads", 1).status == 0
+    whole = program.folder / "whole"
+    rows = history(whole)
+    assert rows[-1]["divisions"] > 0 and max(row["contact_force_N"] for row in rows) > 0.0
+    assert 0.0 < max(row["force_imbalance"] for row in rows) <= 1e-4
+    assert program("run", scene, "--out", "two", "--threads", 2).status == 0
+    same_results(program.folder / "two", whole)
+    resume: list[str] = []
+    for until, threads in ((0.0005, 1), (0.137, 2), (0.2511, 1)):
+        assert program("run", scene, "--out", "out", "--until", until, "--threads", threads, *resume).status == 0
+        resume = ["--resume"]
+    out, killed_h = program.folder / "out", []
+    for _ in range(4):
+        before = written(out / "checkpoint.h5")
+        running = program.start("run", scene, "--out", out, "--resume", "--set", "output.checkpoint_every_h=0.005")
+        while written(out / "checkpoint.h5") == before and running.poll() is None:
+            time.sleep(0.001)
+        running.kill()
+        if running.wait() == 0:
+            break
+        killed_h.append(float(checkpoint(out)["attribute time_h"]))
+    assert any(0.2511 < time_h < 0.4 for time_h in killed_h), "no kill found the run at work"
+    assert program("run", scene, "--out", out, "--resume").status == 0
+    same_results(out, whole)
 
 
 def test_the_resolved_scene_resumes(program: Program, full_run: Path):
@@ -67,8 +136,63 @@ def test_the_resolved_scene_resumes(program: Program, full_run: Path):
     same_results(program.folder / "out", full_run)
 
 
+MEASURED_CELLS = (
+    "Label,pos.X (um),pos.Y (um),pos.Z (um),e1.X,e1.Y,e1.Z,e2.X,e2.Y,e2.Z,r1 (um),r2 (um),r3 (um)\n"
+    + "".join(
+        f"{100 * i + 10 * j + k},{10 * i},{10 * j},{10 * k},1,0,0,0,1,0,5,5,5\n"
+        for i in range(10)
+        for j in range(3)
+        for k in range(3)
+    )
+)
+MEASURED_ROOT = replaced(SMALL, 'name = "small"', "dimension = 3").replace(
+    "length_mm = 0.1\nradius_mm = 0.02\ncell_size_mm = 0.01", 'cells_file = "cells.csv"'
+) + "".join(SECTIONS[name] for name in ("pressure", "growth"))
+
+
+def test_scene_and_cells_moved_together(program: Program):
+    """A run goes on wherever scene and cell file lie now, whatever their names are, as long as they hold the same."""
+    here, there = program.folder / "here", program.folder / "there"
+    here.mkdir()
+    (here / "cells.csv").write_text(MEASURED_CELLS)
+    (here / "scene.toml").write_text(MEASURED_ROOT)
+    assert program("run", here / "scene.toml", "--out", "whole").status == 0
+    assert program("run", here / "scene.toml", "--out", "parts", "--until", 0.1).status == 0
+    here.rename(there)
+    (there / "cells.csv").rename(there / "same.csv")
+    (there / "scene.toml").write_text(replaced(MEASURED_ROOT, "cells.csv", "same.csv"))
+    done = program("run", there / "scene.toml", "--out", "parts", "--resume")
+    assert done.status == 0, done.err
+    same_results(program.folder / "parts", program.folder / "whole")
+
+
+def test_other_cells_in_the_same_place(program: Program):
+    """A cell file that holds something else belongs to another run, where it lies and what it is called in spite; a key
+    that differs as well is named even where the old file is gone."""
+    (program.folder / "cells.csv").write_text(MEASURED_CELLS)
+    scene = program.scene(MEASURED_ROOT)
+    assert program("run", scene, "--out", "out", "--until", 0.1).status == 0
+    (program.folder / "cells.csv").write_text(replaced(MEASURED_CELLS, "900,90,0,0", "900,91,0,0"))
+    done = program("run", scene, "--out", "out", "--resume")
+    assert done.status == 2 and "belongs to another scene" in done.err, done.err
+    assert re.search(r'given:   root.cells_file = ".*cells.csv" \(held something else\)', done.err), done.err
+    (program.folder / "cells.csv").rename(program.folder / "others.csv")
+    other = replaced(replaced(MEASURED_ROOT, "cells.csv", "others.csv"), "c_g = -0.95", "c_g = -0.9")
+    done = program("run", program.scene(other), "--out", "out", "--resume")
+    assert done.status == 2 and "given:   growth.c_g = -0.9 (was -0.95)\n" in done.err, done.err
+
+
+def test_until_beyond_the_end(program: Program):
+    """However far beyond, also where no counter reaches: the run ends at its end."""
+    scene = program.scene(SMALL)
+    for until in ("1", "1e17", "1e308", "inf"):
+        assert program("run", scene, "--out", until, "--until", until).status == 0
+        found = summary(program.folder / until)
+        assert (found["status"], found["time_h"]) == ("done", 0.2)
+
+
 def test_resume_of_a_finished_run_changes_nothing(program: Program, full_run: Path):
-    """--resume after the end leaves the same results, and a longer duration goes on as if it had been asked for at once."""
+    """--resume after the end leaves the same results; a longer duration goes on as if it had been asked for at once."""
     scene = program.scene(FULL)
     assert program("run", scene, "--out", "out", "--set", "scene.duration_h=0.3").status == 0
     assert program("run", scene, "--out", "out", "--resume").status == 0
@@ -81,7 +205,13 @@ def test_what_may_change_on_resume(program: Program, full_run: Path):
     assert program("run", program.scene(FULL), "--out", "out", "--until", 0.05).status == 0
     (program.folder / "out").rename(program.folder / "moved")
     done = program(
-        "run", program.scene(FULL, "same.toml"), "--out", "moved", "--resume", "--set", "output.checkpoint_every_h=0.031"
+        "run",
+        program.scene(FULL, "same.toml"),
+        "--out",
+        "moved",
+        "--resume",
+        "--set",
+        "output.checkpoint_every_h=0.031",
     )
     assert done.status == 0, done.err
     same_results(program.folder / "moved", full_run)
@@ -116,9 +246,14 @@ def test_signal(program: Program, full_run: Path, number: int):
     assert running.wait(120) == 130
     stopped = summary(out)
     assert stopped["status"] == "interrupted" and 0.1 <= stopped["time_h"] < 0.4
-    assert float(checkpoint(out)["attribute time_h"]) == stopped["time_h"]
+    assert float(checkpoint(out)["attribute time_h"]) == stopped["time_h"] == history(out)[-1]["time_h"]
     assert program("run", scene, "--out", out, "--resume").status == 0
     same_results(out, full_run)
+
+
+def written(path: Path) -> int | None:
+    """When a file was replaced by what it is now; None where there is none."""
+    return path.stat().st_mtime_ns if path.exists() else None
 
 
 def test_killed_at_random_instants(program: Program, full_run: Path):
@@ -126,19 +261,27 @@ def test_killed_at_random_instants(program: Program, full_run: Path):
     scene, out = program.scene(FULL), program.folder / "out"
     chance = random.Random(1)
     reference = frames(full_run)
-    for _ in range(8):
-        resume = ["--resume"] if (out / "checkpoint.h5").exists() else []
-        running = program.start("run", scene, "--out", out, *resume)
-        time.sleep(chance.uniform(0.01, 0.35))
+    killed_h = []  # time of the checkpoint that each kill left
+    for kill in range(8):
+        before = written(out / "checkpoint.h5")
+        running = program.start("run", scene, "--out", out, *(["--resume"] if before else []))
+        # Every other one at work, whatever the machine's speed: one of 30 checkpoints of the run has just been written.
+        while kill % 2 == 0 and written(out / "checkpoint.h5") == before and running.poll() is None:
+            time.sleep(0.001)
+        time.sleep(chance.uniform(0.0, 0.03 if kill % 2 == 0 else 0.06))
         running.kill()
-        running.wait()
+        if running.wait() == 0:
+            break
+        assert running.returncode == -signal.SIGKILL
+        if (out / "checkpoint.h5").exists():
+            killed_h.append(float(checkpoint(out)["attribute time_h"]))
         if (out / "run.h5").exists():
-            written = frames(out)
-            assert not (out / "history.csv").exists() or abs(len(written) - len(history(out))) <= 1
-            for frame, expected in zip(written, reference):
+            found = frames(out)
+            assert not (out / "history.csv").exists() or abs(len(found) - len(history(out))) <= 1
+            for frame, expected in zip(found, reference):
                 same_bits(frame, expected)
-    resume = ["--resume"] if (out / "checkpoint.h5").exists() else []
-    done = program("run", scene, "--out", out, *resume)
+    assert any(0.0 < time_h < 0.4 for time_h in killed_h), "no kill found the run at work"
+    done = program("run", scene, "--out", out, "--resume")
     assert done.status == 0, done.err
     same_results(out, full_run)
 
@@ -152,7 +295,7 @@ def test_killed_before_the_first_frame(program: Program, full_run: Path):
         traces = [name for name in ("scene.toml", "run.h5", "history.csv") if (out / name).exists()]
         assert not traces or (out / "checkpoint.h5").exists()
     running.kill()
-    running.wait()
+    assert running.wait() == -signal.SIGKILL
     done = program("run", scene, "--out", out, "--resume")
     assert done.status == 0, done.err
     same_results(out, full_run)

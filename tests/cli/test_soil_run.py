@@ -85,7 +85,9 @@ def same_numbers(a: Path, b: Path) -> None:
         numbers = [name for name in held if name.endswith("soil/numbers")]
         assert len(numbers) == 1
         # alphabetical, as the columns of history.csv are
-        columns = [name for name in (a / "history.csv").read_text().splitlines()[0].split(",")][-held[numbers[0]].size :]
+        columns = [name for name in (a / "history.csv").read_text().splitlines()[0].split(",")][
+            -held[numbers[0]].size :
+        ]
         assert columns == sorted(columns) and set(names) < set(columns)
         held[numbers[0]] = np.delete(held[numbers[0]], [columns.index(name) for name in names])
     same_bits(held_a, held_b)
@@ -123,7 +125,7 @@ def test_resume_changes_nothing(root_in_soil: Program):
         process = root_in_soil.start(*command("parts", *resume))
         wait_for_rows(folder / "parts", process, rows)
         process.kill()
-        process.wait()
+        assert process.wait() == -signal.SIGKILL
         resume = ["--resume"]
     done = root_in_soil(*command("parts", "--resume", "--until", CHECKPOINT_H))
     assert done.status == 0 and "paused" in done.err, done.err
@@ -133,16 +135,18 @@ def test_resume_changes_nothing(root_in_soil: Program):
 
 
 def test_asleep_among_grains(root_in_soil: Program):
-    """Tissue that grains press on rests, its markers stand still, forces balance; killed and resumed, the same numbers."""
+    """Tissue that grains press on rests, markers stand still, forces balance; killed and resumed, the same numbers."""
     folder = root_in_soil.folder
     done = root_in_soil(*command("asleep", settings=ASLEEP))
     assert done.status == 0, done.err
     rows, frame = history(folder / "asleep"), frames(folder / "asleep")
     assert min(row["cells_at_rest"] for row in rows[1:]) > 20
     assert summary(folder / "asleep")["momentum_residual"] < 1e-12
-    asleep = frame[-1]["clamped"] == 2
+    asleep = frame[-1]["asleep"] == 1
     assert np.count_nonzero(frame[-1]["contact_force"][asleep]) > 0, "grains press on cells that sleep"
-    resting_mm = frame[-1]["position"][asleep, 0].max() - 0.4  # markers farther from the tip follow cells that sleep only
+    resting_mm = (
+        frame[-1]["position"][asleep, 0].max() - 0.4
+    )  # markers farther from the tip follow cells that sleep only
     place = [dict(zip(f["markers/marker_id"], map(tuple, f["markers/position"]))) for f in frame[1:]]
     still = {marker: x for marker, x in place[0].items() if x[0] < resting_mm}
     assert len(still) > 10
@@ -150,7 +154,7 @@ def test_asleep_among_grains(root_in_soil: Program):
     process = root_in_soil.start(*command("asleep_parts", settings=ASLEEP))
     wait_for_rows(folder / "asleep_parts", process, 3)
     process.kill()
-    process.wait()
+    assert process.wait() == -signal.SIGKILL
     done = root_in_soil(*command("asleep_parts", "--resume", settings=ASLEEP))
     assert done.status == 0, done.err
     same_numbers(folder / "asleep_parts", folder / "asleep")
@@ -192,11 +196,13 @@ def test_nobody_listens(root_in_soil: Program):
     wait_for_rows(root_in_soil.folder / "ports", process, 1)
     yade = yade_of(process.pid)
     assert yade is not None
-    open_files = [os.readlink(f) for pid in (process.pid, yade) for f in Path(f"/proc/{pid}/fd").iterdir() if f.is_symlink()]
+    open_files = [
+        os.readlink(f) for pid in (process.pid, yade) for f in Path(f"/proc/{pid}/fd").iterdir() if f.is_symlink()
+    ]
     assert any(name.startswith("socket:") for name in open_files), "the two talk over a socket pair"
     assert not {f"socket:[{inode}]" for inode in listening()} & set(open_files)
     process.kill()
-    process.wait()
+    assert process.wait() == -signal.SIGKILL
     until = time.monotonic() + 10.0
     while Path(f"/proc/{yade}").exists() and time.monotonic() < until:
         time.sleep(0.05)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Division of a tissue that has every field a scene can ask for (the paper's 4.2).
-#include "root_sph/effects/division.hpp"
+#include "root_sph/effects/division/division.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "root_sph/effects/anisotropy.hpp"
-#include "root_sph/effects/growth.hpp"
-#include "root_sph/effects/inertia_relief.hpp"
-#include "root_sph/effects/obstacle.hpp"
-#include "root_sph/effects/probe.hpp"
+#include "root_sph/core/symmetric.hpp"
+#include "root_sph/dynamics/cell_axes.hpp"
+#include "root_sph/model/model.hpp"
 #include "tests/support/block.hpp"
+#include "tests/support/every_effect.hpp"
 
 namespace rootsoil {
 namespace {
@@ -26,23 +25,14 @@ using test::Random;
 
 template <int Dim>
 struct FullTissue {
-  Solver<Dim> solver{SolverOptions{}};
-  std::vector<std::unique_ptr<Effect<Dim>>> effects;
+  std::unique_ptr<Model<Dim>> model =
+      build_model<Dim>(read_scene(test::every_effect, test::in_dimension(Dim)),
+                       {.make_soil = [](const Scene&, const SoilStart&) { return std::make_unique<test::NoSoil>(); }});
+  Solver<Dim>& solver = model->solver;
 
   FullTissue() {
     ParticleStore<Dim>& cells = solver.tissue().cells;
     cells.resize(9);
-    const auto modulus = [](double) { return RadialModulusProfile{1020.0, 15000.0, 0.5, 6.0, 0.2}; };
-    const auto softening = [](double) { return SofteningProfile{4e5, -0.05, 0.37, -1.0}; };
-    effects.push_back(std::make_unique<AnisotropyEffect<Dim>>(solver, test::table_1(), modulus));
-    effects.push_back(std::make_unique<GrowthEffect<Dim>>(solver, softening));
-    effects.push_back(std::make_unique<InertiaCompensationEffect<Dim>>(solver));
-    effects.push_back(std::make_unique<MidlineDampingEffect<Dim>>(solver, 1.0));
-    const Plane<Dim> wall{Vec<Dim>::Zero(), Vec<Dim>::UnitX()};
-    effects.push_back(std::make_unique<ObstacleEffect<Dim>>(solver, ObstacleParameters<Dim>{"wall", wall}));
-    effects.push_back(std::make_unique<ProbeEffect<Dim>>(solver, ProbeParameters{"p", std::array{0.0, 0.0, 0.0}, {}}));
-    solver.pair_terms() = make_pair_terms<Dim>(cells, 1020.0, 0.5, 0.05, 1.0);
-    cells.template declare<Voigt<Dim>>({"deviatoric_stress", "MPa", ""}, on_division::copy<Dim, Voigt<Dim>>);
 
     Random random(7);
     for (const auto& field : cells.fields()) {
@@ -84,6 +74,13 @@ template <class Dimension>
 class CellDivision : public testing::Test {};
 TYPED_TEST_SUITE(CellDivision, test::BothDimensions, test::DimensionName);
 
+TYPED_TEST(CellDivision, IsLookedAtWithEveryEffectOfTheTable) {
+  const Scene scene = read_scene(test::every_effect, test::in_dimension(TypeParam::value));
+  for (const EffectSpec& effect : effect_table()) {
+    EXPECT_TRUE(effect.called_for(scene)) << "call for '" << effect.name << "' by " << effect.called_by;
+  }
+}
+
 /// A column that is missing here fails the test: who adds a column says what division does to it.
 TYPED_TEST(CellDivision, EveryFieldFollowsItsRule) {
   constexpr int dim = TypeParam::value;
@@ -94,9 +91,19 @@ TYPED_TEST(CellDivision, EveryFieldFollowsItsRule) {
   ASSERT_EQ(cells.size(), 10u);
   const auto first = numbers_of<dim>(cells, 4), second = numbers_of<dim>(cells, 9);
 
-  const std::vector<std::string> copied{"velocity", "material_stress",  "frame", "clamped", "slip wall",
-                                        "probe p",  "deviatoric_stress"};
-  const std::vector<std::string> halved{"volume", "mass", "contact wall"};
+  const std::vector<std::string> copied{"velocity",
+                                        "material_stress",
+                                        "frame",
+                                        "clamped",
+                                        "slip wall",
+                                        "probe p",
+                                        "deviatoric_stress",
+                                        "asleep",
+                                        "neighbours_at_rest",
+                                        "looked_at",
+                                        "strain_since_look",
+                                        "stress_asleep"};
+  const std::vector<std::string> halved{"volume", "mass", "contact wall", "soil force", "soil force asleep"};
   const std::vector<std::string> checked_elsewhere{"position", "shape",     "distance_to_tip", "generation",
                                                    "cell_id",  "parent_id", "window_index"};
   for (const auto& field : cells.fields()) {
@@ -171,11 +178,11 @@ TYPED_TEST(CellDivision, HalvesTheLongestAxisAndKeepsTheOthers) {
   FullTissue<dim> full;
   auto& cells = full.cells();
   const Mat<dim> mother = cells.shape[4];
-  const Eigen::SelfAdjointEigenSolver<Mat<dim>> axes(mother);
+  const SymmetricEigen<dim> axes = symmetric_eigen<dim>(mother);
   full.divide(4);
   for (const std::size_t daughter : {4, 9}) {
-    const Mat<dim> in_mothers_axes = axes.eigenvectors().transpose() * cells.shape[daughter] * axes.eigenvectors();
-    Vec<dim> expected = axes.eigenvalues();
+    const Mat<dim> in_mothers_axes = axes.vectors.transpose() * cells.shape[daughter] * axes.vectors;
+    Vec<dim> expected = axes.values;
     expected[0] *= 4.0;
     EXPECT_LT((in_mothers_axes - Mat<dim>(expected.asDiagonal())).norm(), 1e-12 * mother.norm());
   }
@@ -226,6 +233,19 @@ TYPED_TEST(CellDivision, LeavesOtherCellsAlone) {
 TYPED_TEST(CellDivision, OfACellThatIsNotThereIsRefused) {
   FullTissue<TypeParam::value> full;
   EXPECT_THROW(full.cells().divide(9, Vec<TypeParam::value>::UnitX(), 0.1, 1, 2), std::logic_error);
+}
+
+TEST(CellsWhenDivided, HalvesEveryAxisAboveTheThreshold) {
+  const auto cells = [](double along, double across, double threshold) {
+    Mat<3> shape = 4.0 / (across * across) * Mat<3>::Identity();
+    shape(0, 0) = 4.0 / (along * along);
+    return cells_when_divided<3>(shape, threshold);
+  };
+  EXPECT_EQ(cells(0.9, 0.9, 1.0), 1.0);
+  EXPECT_EQ(cells(1.1, 0.9, 1.0), 2.0);
+  EXPECT_EQ(cells(1.9, 1.9, 1.0), 8.0);
+  EXPECT_EQ(cells(7.9, 0.9, 1.0), 8.0);
+  EXPECT_EQ(cells(1000.0, 1000.0, 1.0), std::pow(1024.0, 3));
 }
 
 }  // namespace

@@ -157,8 +157,8 @@ TYPED_TEST(Gradient, UsesTheQuadraticFitAtSurfacesOnly) {
   }
 }
 
-/// Two rows do not know the curvature across them; waves of a few per cent of the spacing must not decide it. Without a ridge
-/// they amplify what is not smooth 5.6-fold (docs/decisions/0017).
+/// Two rows do not know the curvature across them; waves of a few per cent of the spacing must not decide it. Without a
+/// ridge they amplify what is not smooth 5.6-fold (docs/decisions/0017).
 TEST(QuadraticFit, OfTwoWavyRowsInventsNoCurvature) {
   constexpr double spacing_mm = 0.01;
   Cloud<2> rows;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "root_sph/core/errors.hpp"
 #include "tests/support/block.hpp"
 
 namespace rootsoil {
@@ -84,8 +85,8 @@ TYPED_TEST(Axis, OfARootShorterThanTwoSlicesIsItsMeanDirection) {
   for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(tissue.cells.distance_to_tip[i], exact[i], 1e-12);
 }
 
-/// Slices narrower than the root is now would hold cells of one side only: the line zigzags, distances jump by a cell, and growth,
-/// which follows them, tears the root (docs/decisions/0004).
+/// Slices narrower than the root is now would hold cells of one side only: the line zigzags, distances jump by a cell,
+/// and growth, which follows them, tears the root (docs/decisions/0004).
 TYPED_TEST(Axis, OfASwollenRootStaysStraight) {
   constexpr int dim = TypeParam::value;
   constexpr int along = 24;
@@ -150,7 +151,7 @@ TYPED_TEST(Axis, FlowIsTheIntegralOfTheStrainRate) {
   axis.start(tissue);
   constexpr double window_h = 0.02;
   for (std::size_t i = 0; i < tissue.cells.size(); ++i) tissue.axial_strain[i] = 0.3 * window_h;
-  axis.measure_flow(tissue, window_h);
+  axis.measure_flow(tissue, tissue.cells.distance_to_tip.values(), window_h);
   for (double s = 0.0; s < 0.8; s += 0.037) {
     EXPECT_NEAR(axis.flow_mm_h(s), 0.3 * s, 1e-13);
     EXPECT_NEAR(axis.strain_rate_per_h(s), 0.3, 1e-12);
@@ -173,7 +174,7 @@ TYPED_TEST(Axis, FillsBinsWithoutCellsFromTheirNeighbours) {
   ASSERT_LT(axis.bin_mm(), 0.01);
   constexpr double window_h = 0.02;
   for (std::size_t i = 0; i < tissue.cells.size(); ++i) tissue.axial_strain[i] = 0.3 * window_h;
-  axis.measure_flow(tissue, window_h);
+  axis.measure_flow(tissue, tissue.cells.distance_to_tip.values(), window_h);
   for (double s = 0.0; s < 2.0; s += 0.037) EXPECT_NEAR(axis.flow_mm_h(s), 0.3 * s, 1e-12);
 
   // rates that fall along the root: in the gaps a straight line between the cells
@@ -182,7 +183,7 @@ TYPED_TEST(Axis, FillsBinsWithoutCellsFromTheirNeighbours) {
   for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
     tissue.axial_strain[i] = (0.3 - 0.1 * tissue.cells.distance_to_tip[i]) * window_h;
   }
-  falling.measure_flow(tissue, window_h);
+  falling.measure_flow(tissue, tissue.cells.distance_to_tip.values(), window_h);
   // a bin's value is that of its cell, which is off the bin's middle by up to half a bin
   const double slack = 0.1 * falling.bin_mm();
   for (double s = 0.06; s < 1.94; s += 0.037) EXPECT_NEAR(falling.strain_rate_per_h(s), 0.3 - 0.1 * s, slack);
@@ -198,7 +199,7 @@ TYPED_TEST(Axis, LeavesClampedCellsOutOfTheFlow) {
   }
   RootAxis<dim> axis;
   axis.start(tissue);
-  axis.measure_flow(tissue, 0.02);
+  axis.measure_flow(tissue, tissue.cells.distance_to_tip.values(), 0.02);
   EXPECT_NEAR(axis.length_mm(), 0.7, 1e-12);
   EXPECT_NEAR(axis.flow_mm_h(0.7), 0.21, 1e-12);
 }
@@ -212,7 +213,7 @@ TYPED_TEST(Axis, SmoothsTheFlowOverATenthOfAnHour) {
   constexpr double window_h = 0.02;
   const auto measure = [&](double rate) {
     for (double& strain : tissue.axial_strain.values()) strain = rate * window_h;
-    axis.measure_flow(tissue, window_h);
+    axis.measure_flow(tissue, tissue.cells.distance_to_tip.values(), window_h);
     return axis.flow_mm_h(0.5) / 0.5;
   };
   // the first measurement is taken whole, later ones by window/0.1 h
@@ -242,6 +243,7 @@ TYPED_TEST(Axis, ComesBackFromItsSavedNumbers) {
 TYPED_TEST(Axis, InertiaErrorIsTheLargestUnbalancedForceOverThatOfThePressure) {
   constexpr int dim = TypeParam::value;
   Tissue<dim> tissue;
+  tissue.need_inertia();
   straight_root<dim>(tissue, 80, 6);
   RootAxis<dim> axis;
   axis.start(tissue);
@@ -255,15 +257,27 @@ TYPED_TEST(Axis, InertiaErrorIsTheLargestUnbalancedForceOverThatOfThePressure) {
     // +f near the tip, -f near the base: f is carried in between. Prescribed accelerations are not counted
     const double s = tissue.cells.distance_to_tip[i];
     const double unbalanced = s < size ? f : s > 79 * size ? -f : 0.0;
-    tissue.inverse_inertia[i].setConstant(1.0 / inertia);
-    tissue.start_velocity[i] = random.matrix<Vec<dim>>();
+    tissue.inertia->inverse[i].setConstant(1.0 / inertia);
+    tissue.inertia->start_velocity[i] = random.matrix<Vec<dim>>();
     (*tissue.body_acceleration)[i] = random.matrix<Vec<dim>>();
     const Vec<dim> acceleration = (*tissue.body_acceleration)[i] + unbalanced / inertia * Vec<dim>::UnitX();
-    tissue.cells.velocity[i] = tissue.start_velocity[i] + window_h * acceleration;
+    tissue.cells.velocity[i] = tissue.inertia->start_velocity[i] + window_h * acceleration;
   }
   const double carried = f * std::pow(6, dim - 1);
   EXPECT_NEAR(inertia_error<dim>(tissue, axis, window_h), carried / (0.5 * section), 1e-9);
   EXPECT_EQ(inertia_error<dim>(tissue, axis, 0.0), 0.0);
+}
+
+TYPED_TEST(Axis, OfCellsThatFlewApartIsRefusedBeforeMemoryIsTaken) {
+  constexpr int dim = TypeParam::value;
+  Tissue<dim> tissue;
+  straight_root<dim>(tissue, 80, 6);
+  auto& cells = tissue.cells;
+  for (std::size_t i = 0; i < cells.size(); ++i) cells.distance_to_tip[i] = 0.4 - cells.position[i][0];
+  RootAxis<dim> axis;
+  axis.start(tissue);
+  cells.distance_to_tip[0] = 1e9;
+  EXPECT_THROW(axis.anchor(tissue), UnphysicalError);
 }
 
 }  // namespace

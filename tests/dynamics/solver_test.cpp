@@ -24,7 +24,8 @@ namespace {
 
 using test::Random;
 
-constexpr int steps_a_window = 10;
+/// A step without inertia is a window, and finds a balance.
+constexpr int steps_a_window(Stepper stepper) { return stepper == Stepper::quasi_static ? 1 : 10; }
 
 /// A short root of irregular cells held at its base, that grows, divides and has every pair term.
 template <int Dim>
@@ -34,7 +35,8 @@ std::unique_ptr<Solver<Dim>> growing_root(Stepper stepper, bool with_cells) {
   options.stepper = stepper;
   auto solver = std::make_unique<Solver<Dim>>(options);
   Tissue<Dim>& tissue = solver->tissue();
-  solver->pair_terms() = make_pair_terms<Dim>(tissue.cells, 1020.0, 0.5, 0.05, 0.1);
+  const bool inertia = tissue.inertia.has_value();
+  solver->pair_terms() = make_pair_terms<Dim>(tissue.cells, 1020.0, inertia ? 0.5 : 0.0, 0.05, inertia ? 0.1 : 0.0);
   tissue.material.softening = &tissue.cells.template declare<double>({"softening", "ug/(mm^3 h)", "", Storage::scratch},
                                                                      on_division::recomputed<Dim, double>);
   // what the columns cannot hold must come from the checkpoint: profile material too
@@ -57,8 +59,8 @@ std::unique_ptr<Solver<Dim>> growing_root(Stepper stepper, bool with_cells) {
   }
   tissue.pressure_MPa = 1.0;
   Solver<Dim>* running = solver.get();
-  solver->hooks().window_start.emplace_back("division", [running](Tissue<Dim>& t) {
-    if (running->steps() % (2 * steps_a_window) != steps_a_window) return;  // in every other window
+  solver->hooks().division.emplace_back("division", [running, steps = steps_a_window(stepper)](Tissue<Dim>& t) {
+    if (running->steps() % (2 * steps) != steps) return;  // in every other window
     for (const std::size_t mother : {t.cells.size() / 3, t.cells.size() / 2}) {
       t.cells.divide(mother, Vec<Dim>::UnitX(), 0.01, t.next_cell_id, t.next_cell_id + 1);
       t.next_cell_id += 2;
@@ -111,13 +113,13 @@ TYPED_TEST_SUITE(SolverBits, test::BothDimensions, test::DimensionName);
 TYPED_TEST(SolverBits, AreTheSameForAnyNumberOfThreads) {
   constexpr int dim = TypeParam::value;
   const int before = omp_get_max_threads();
-  for (const Stepper stepper : {Stepper::symplectic, Stepper::predictor_corrector}) {
+  for (const Stepper stepper : {Stepper::quasi_static, Stepper::symplectic, Stepper::predictor_corrector}) {
     std::vector<Checkpoint> states;
     for (const int threads : {1, 2, 3}) {
       omp_set_num_threads(threads);
       const auto solver = growing_root<dim>(stepper, true);
       const std::size_t cells = solver->tissue().cells.size();
-      for (int window = 0; window < 4; ++window) solver->advance_window(steps_a_window);
+      for (int window = 0; window < 4; ++window) solver->advance_window(steps_a_window(stepper));
       EXPECT_GE(solver->tissue().pairs.blocks.size(), 4u);
       EXPECT_EQ(solver->tissue().cells.size(), cells + 4);
       states.push_back(state_of<dim>(*solver));
@@ -130,19 +132,19 @@ TYPED_TEST(SolverBits, AreTheSameForAnyNumberOfThreads) {
 
 TYPED_TEST(SolverBits, AreTheSameAfterARestore) {
   constexpr int dim = TypeParam::value;
-  for (const Stepper stepper : {Stepper::symplectic, Stepper::predictor_corrector}) {
+  for (const Stepper stepper : {Stepper::quasi_static, Stepper::symplectic, Stepper::predictor_corrector}) {
     // interrupted before the first window, before and after windows with divisions
     for (const int interrupted_after : {0, 1, 2, 3}) {
       const auto whole = growing_root<dim>(stepper, true);
-      for (int window = 0; window < interrupted_after; ++window) whole->advance_window(steps_a_window);
+      for (int window = 0; window < interrupted_after; ++window) whole->advance_window(steps_a_window(stepper));
       const Checkpoint checkpoint = state_of<dim>(*whole);
-      for (int window = 0; window < 3; ++window) whole->advance_window(steps_a_window);
+      for (int window = 0; window < 3; ++window) whole->advance_window(steps_a_window(stepper));
 
       const auto resumed = growing_root<dim>(stepper, false);
       restore_cells<dim>(checkpoint, resumed->tissue().cells);
       resumed->restore(checkpoint.reals, checkpoint.integers);
       expect_same_bits(state_of<dim>(*resumed), checkpoint);
-      for (int window = 0; window < 3; ++window) resumed->advance_window(steps_a_window);
+      for (int window = 0; window < 3; ++window) resumed->advance_window(steps_a_window(stepper));
       SCOPED_TRACE(interrupted_after);
       expect_same_bits(state_of<dim>(*whole), state_of<dim>(*resumed));
       EXPECT_EQ(whole->tissue().time_h, resumed->tissue().time_h);
@@ -202,7 +204,7 @@ TYPED_TEST(SolverEnergy, StaysBoundedWithThePredictorCorrector) {
 
 // Damping acts on the predicted velocity: the limit (w dt)^2/4 + c dt/2 - (c dt)^2/4 <= 1 lies above the leapfrog's.
 TYPED_TEST(SolverEnergy, IsNotAddedByStrongPairTerms) {
-  for (const Stepper stepper : {Stepper::symplectic, Stepper::predictor_corrector}) {
+  for (const Stepper stepper : {Stepper::quasi_static, Stepper::symplectic, Stepper::predictor_corrector}) {
     EXPECT_LT(largest_energy_ratio<TypeParam::value>(stepper, 2.0, 0.5), 1.05);
   }
 }
@@ -223,7 +225,8 @@ TYPED_TEST(SolverErrors, StopWhenACellIsNoLongerANumber) {
     const std::string text = error.what();
     const std::size_t from = text.find("(position "), to = text.find(" mm, distance");
     ASSERT_LT(from, to) << text;
-    EXPECT_EQ(std::count(text.begin() + static_cast<std::ptrdiff_t>(from), text.begin() + static_cast<std::ptrdiff_t>(to), ','),
+    EXPECT_EQ(std::count(text.begin() + static_cast<std::ptrdiff_t>(from),
+                         text.begin() + static_cast<std::ptrdiff_t>(to), ','),
               TypeParam::value - 1)
         << text;
   }
@@ -238,7 +241,7 @@ TYPED_TEST(SolverErrors, StopWhenACellCollapsesWithinAWindow) {
     if (!cells.clamped[i]) cells.velocity[i] = -60.0 * (cells.position[i] + Vec<dim>::Constant(0.2));
   }
   for (Stiffness<dim>& k : solver->tissue().material.stiffness->values()) k.setZero();
-  solver->hooks().step_start.emplace_back("collapse", [](Tissue<dim>& t) {
+  solver->hooks().step_loads.emplace_back("collapse", [](Tissue<dim>& t) {
     for (std::size_t i = 0; i < t.cells.size(); ++i) t.cells.velocity[i] = -60.0 * t.cells.position[i];
   });
   EXPECT_THROW(solver->advance_window(20), UnphysicalError);

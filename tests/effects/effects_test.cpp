@@ -9,12 +9,15 @@
 #include <variant>
 #include <vector>
 
-#include "root_sph/effects/anisotropy.hpp"
-#include "root_sph/effects/division.hpp"
-#include "root_sph/effects/growth.hpp"
-#include "root_sph/effects/inertia_relief.hpp"
-#include "root_sph/effects/pressure.hpp"
-#include "root_sph/effects/probe.hpp"
+#include "root_sph/dynamics/cell_axes.hpp"
+#include "root_sph/effects/anisotropy/anisotropy.hpp"
+#include "root_sph/effects/division/division.hpp"
+#include "root_sph/effects/growth/growth.hpp"
+#include "root_sph/effects/inertia_compensation/inertia_compensation.hpp"
+#include "root_sph/effects/midline_damping/midline_damping.hpp"
+#include "root_sph/effects/pressure/pressure.hpp"
+#include "root_sph/effects/probe/probe.hpp"
+#include "root_sph/scene/time_table.hpp"
 #include "tests/support/block.hpp"
 
 namespace rootsoil {
@@ -23,15 +26,15 @@ namespace {
 using test::Random;
 
 TEST(PressureTable, IsLinearBetweenItsRowsAndConstantBeyond) {
-  const std::vector<std::array<double, 2>> table{{1.0, 0.2}, {2.0, 1.0}, {4.0, 0.0}};
-  EXPECT_EQ(pressure_at(table, 0.0), 0.2);
-  EXPECT_EQ(pressure_at(table, 1.0), 0.2);
-  EXPECT_NEAR(pressure_at(table, 1.25), 0.4, 1e-15);
-  EXPECT_EQ(pressure_at(table, 2.0), 1.0);
-  EXPECT_NEAR(pressure_at(table, 3.5), 0.25, 1e-15);
-  EXPECT_EQ(pressure_at(table, 4.0), 0.0);
-  EXPECT_EQ(pressure_at(table, 100.0), 0.0);
-  EXPECT_EQ(pressure_at({{0.0, 0.7}}, 3.0), 0.7);
+  const Rows table{{1.0, 0.2}, {2.0, 1.0}, {4.0, 0.0}};
+  EXPECT_EQ(value_at(table, 0.0), 0.2);
+  EXPECT_EQ(value_at(table, 1.0), 0.2);
+  EXPECT_NEAR(value_at(table, 1.25), 0.4, 1e-15);
+  EXPECT_EQ(value_at(table, 2.0), 1.0);
+  EXPECT_NEAR(value_at(table, 3.5), 0.25, 1e-15);
+  EXPECT_EQ(value_at(table, 4.0), 0.0);
+  EXPECT_EQ(value_at(table, 100.0), 0.0);
+  EXPECT_EQ(value_at({{0.0, 0.7}}, 3.0), 0.7);
 }
 
 template <class Dimension>
@@ -60,8 +63,8 @@ TYPED_TEST(Effects, ConstantPressureIsSetOnceWithoutAPass) {
   constexpr int dim = TypeParam::value;
   PressureEffect<dim> pressure(this->solver, {{0.0, 0.7}});
   EXPECT_EQ(this->tissue.pressure_MPa, 0.7);
-  EXPECT_TRUE(this->solver.hooks().step_start.empty());
-  EXPECT_TRUE(this->solver.hooks().window_start.empty());
+  EXPECT_TRUE(this->solver.hooks().step_loads.empty());
+  EXPECT_TRUE(this->solver.hooks().loads.empty());
 }
 
 TYPED_TEST(Effects, PressureFollowsItsTableInWindowsAndSteps) {
@@ -69,22 +72,28 @@ TYPED_TEST(Effects, PressureFollowsItsTableInWindowsAndSteps) {
   PressureEffect<dim> pressure(this->solver, {{0.0, 0.0}, {2.0, 1.0}});
   EXPECT_EQ(this->tissue.pressure_MPa, 0.0);
   this->tissue.time_h = 0.5;
-  this->run(this->solver.hooks().window_start);
+  this->run(this->solver.hooks().loads);
   EXPECT_NEAR(this->tissue.pressure_MPa, 0.25, 1e-15);
   this->tissue.time_h = 1.0;
-  this->run(this->solver.hooks().step_start);
+  this->run(this->solver.hooks().step_loads);
   EXPECT_NEAR(this->tissue.pressure_MPa, 0.5, 1e-15);
 }
 
-TYPED_TEST(Effects, GrowthSetsTheSofteningOfFreeCellsFromTheProfileAtThePressure) {
+/// A scene with one section, of which one key falls to 0 with the pressure: that shows which pressure was asked for.
+template <class S>
+Scene scene_with(const S& section, const std::string& name, const std::string& key, double value) {
+  Scene scene;
+  scene.tissue.E_axial_MPa = test::table_1().E_axial_MPa;
+  scene.tissue.G_MPa = test::table_1().G_MPa;
+  scene.all<S>() = {section};
+  scene.responses = {{.section = name, .p_MPa = {1.0, 0.0}, .pairs = {{key, {value, 0.0}}}}};
+  return scene;
+}
+
+TYPED_TEST(Effects, GrowthSetsTheSofteningOfFreeCellsAtThePressure) {
   constexpr int dim = TypeParam::value;
-  // an amplitude that follows the pressure shows which pressure was asked for
-  SofteningProfile profile{4e5, 0.05, 0.1, 1.0};  // c_g = 1: the same everywhere
-  GrowthEffect<dim> growth(this->solver, [&](double p) {
-    SofteningProfile at = profile;
-    at.lambda0_ug_mm3_h *= p;
-    return at;
-  });
+  const GrowthSection uniform{0.0, 0.05, 0.1, 1.0, {}};  // c_g = 1: the same everywhere
+  GrowthEffect<dim> growth(this->solver, scene_with(uniform, "growth", "lambda0_ug_mm3_h", 4e5));
   this->fill_root();
   test::build_operators<dim>(this->tissue, 1.5, GradientMode::linear);
   this->tissue.pressure_MPa = 0.5;
@@ -92,34 +101,39 @@ TYPED_TEST(Effects, GrowthSetsTheSofteningOfFreeCellsFromTheProfileAtThePressure
   const auto& softening = *this->tissue.material.softening;
   for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) EXPECT_NEAR(softening[i], 2e5, 1e-6);
 
-  // a profile that varies over many cells is met to second order
-  profile = {4e5, -0.3, 0.4, -1.0};
-  this->run(this->solver.hooks().operators);
-  for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) {
-    const double s = this->tissue.cells.distance_to_tip[i];
-    EXPECT_NEAR(softening[i], 0.5 * profile(s), 0.02 * 2e5) << s;
-  }
-
   this->tissue.cells.clamped[5] = 1;
   this->run(this->solver.hooks().operators);
   EXPECT_EQ(softening[5], 0.0);
 }
 
+TYPED_TEST(Effects, GrowthMeetsAProfileThatVariesOverManyCellsToSecondOrder) {
+  constexpr int dim = TypeParam::value;
+  const GrowthSection profile{4e5, -0.3, 0.4, -1.0, {}};
+  Scene scene;
+  scene.all<GrowthSection>() = {profile};
+  GrowthEffect<dim> growth(this->solver, scene);
+  this->fill_root();
+  test::build_operators<dim>(this->tissue, 1.5, GradientMode::linear);
+  this->run(this->solver.hooks().operators);
+  for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) {
+    const double s = this->tissue.cells.distance_to_tip[i];
+    EXPECT_NEAR((*this->tissue.material.softening)[i], softening_ug_mm3_h(profile, s), 0.02 * 4e5) << s;
+  }
+}
+
 TYPED_TEST(Effects, AnisotropySetsTheStiffnessFromTheProfileAtThePressure) {
   constexpr int dim = TypeParam::value;
-  AnisotropyEffect<dim> anisotropy(this->solver, test::table_1(), [](double p) {
-    return RadialModulusProfile{1020.0, 15000.0 * p, 0.1, 20.0, 0.2};
-  });
+  const AnisotropySection section{0.0, 0.1, 20.0, 0.2};
+  AnisotropyEffect<dim> anisotropy(this->solver, scene_with(section, "tissue.anisotropy", "E_radial_max_MPa", 15000.0));
   this->fill_root();
   this->tissue.pressure_MPa = 0.5;
   this->run(this->solver.hooks().parameters);
-  const RadialModulusProfile profile{1020.0, 7500.0, 0.1, 20.0, 0.2};
   std::vector<FrameColumn> columns;
   anisotropy.add_columns(this->tissue, columns);
   ASSERT_EQ(columns.size(), 1u);
   const auto& written = std::get<std::vector<double>>(columns[0].values);
   for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) {
-    const double modulus = profile(this->tissue.cells.distance_to_tip[i]);
+    const double modulus = radial_modulus_MPa({7500.0, 0.1, 20.0, 0.2}, 1020.0, this->tissue.cells.distance_to_tip[i]);
     EXPECT_EQ(this->tissue.material.stiffness_of(i), stiffness<dim>(test::table_1(modulus)));
     EXPECT_EQ(written[i], modulus);
   }
@@ -131,17 +145,31 @@ TYPED_TEST(Effects, InertiaCompensationGivesFreeCellsTheSteadyAcceleration) {
   this->fill_root();
   this->tissue.cells.clamped[5] = 1;
   for (double& strain : this->tissue.axial_strain.values()) strain = 0.3 * 0.02;
-  this->solver.axis().measure_flow(this->tissue, 0.02);
-  this->run(this->solver.hooks().parameters);
+  this->solver.axis().measure_flow(this->tissue, this->tissue.cells.distance_to_tip.values(), 0.02);
+  this->run(this->solver.hooks().acceleration);
   const double length = this->solver.axis().length_mm();
   for (std::size_t i = 0; i < this->tissue.cells.size(); ++i) {
     // uniform rate e: a = e^2 (L - s)
     const double expected = i == 5 ? 0.0 : 0.09 * (length - this->tissue.cells.distance_to_tip[i]);
     EXPECT_LT(((*this->tissue.body_acceleration)[i] - expected * Vec<dim>::UnitX()).norm(), 1e-12);
   }
-  // every window starts anew
-  this->run(this->solver.hooks().parameters);
-  EXPECT_NEAR((*this->tissue.body_acceleration)[0][0], 0.09 * (length - this->tissue.cells.distance_to_tip[0]), 1e-12);
+}
+
+TYPED_TEST(Effects, PrescribedAccelerationsStartAnewInEveryWindow) {
+  this->fill_root();
+  this->tissue.step_h = 1e-4;
+  this->tissue.material.uniform = stiffness<TypeParam::value>(test::table_1());
+  this->tissue.material.rho0_ug_mm3 = 1000.0;
+  Field<TypeParam::value, Vec<TypeParam::value>>& acceleration = this->solver.need_body_acceleration();
+  EXPECT_EQ(&acceleration, &this->solver.need_body_acceleration());
+  this->solver.hooks().acceleration.emplace_back("one more", [&](auto& t) {
+    for (std::size_t i = 0; i < t.cells.size(); ++i) acceleration[i] += Vec<TypeParam::value>::UnitX();
+  });
+  this->solver.prepare();
+  for (int window = 0; window < 2; ++window) {
+    this->solver.advance_window(1);
+    EXPECT_EQ(acceleration[0], (Vec<TypeParam::value>(Vec<TypeParam::value>::UnitX())));
+  }
 }
 
 TYPED_TEST(Effects, MidlineDampingResistsTheLateralMotionOfSlicesOnly) {
@@ -157,7 +185,7 @@ TYPED_TEST(Effects, MidlineDampingResistsTheLateralMotionOfSlicesOnly) {
     widening[0] = 0.7;
     cells.velocity[i] = sideways + widening;
   }
-  this->run(this->solver.hooks().parameters);
+  this->run(this->solver.hooks().acceleration);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const Vec<dim> expected = i == 5 ? Vec<dim>(Vec<dim>::Zero()) : Vec<dim>(-3.0 * sideways);
     EXPECT_LT(((*this->tissue.body_acceleration)[i] - expected).norm(), 1e-12);
@@ -191,7 +219,7 @@ TYPED_TEST(Effects, DivisionCutsFreeCellsLongerThanTheThresholdOnce) {
   constexpr int dim = TypeParam::value;
   this->fill_root();
   auto& cells = this->tissue.cells;
-  DivisionEffect<dim> division(this->solver, {0.012, 1.0, 0.0, 0.0});
+  DivisionEffect<dim> division(this->solver, {0.012, 1.0, 0.0, 0.0, {}});
   const auto lengthen = [&](std::size_t i, double length) {
     Vec<dim> lengths = Vec<dim>::Constant(0.01);
     lengths[dim - 1] = length;
@@ -204,7 +232,7 @@ TYPED_TEST(Effects, DivisionCutsFreeCellsLongerThanTheThresholdOnce) {
   cells.clamped[9] = 1;
   const std::size_t before = cells.size();
   const std::int64_t next_id = this->tissue.next_cell_id;
-  this->run(this->solver.hooks().window_start);
+  this->run(this->solver.hooks().division);
   EXPECT_EQ(cells.size(), before + 2);
   EXPECT_EQ(this->tissue.next_cell_id, next_id + 4);
   for (std::size_t i = 0; i < before; ++i) EXPECT_EQ(cells.generation[i], i == 3 || i == 8 ? 1 : 0) << i;
@@ -212,17 +240,23 @@ TYPED_TEST(Effects, DivisionCutsFreeCellsLongerThanTheThresholdOnce) {
   std::vector<std::int64_t> ids = cells.cell_id.values();
   std::sort(ids.begin(), ids.end());
   EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
-  this->run(this->solver.hooks().window_start);
+  this->run(this->solver.hooks().division);
   EXPECT_EQ(cells.size(), before + 4);
+}
+
+TEST(RunawayDivision, IsToldByTheCellsLengthOrTheirNumber) {
+  EXPECT_EQ(runaway_division(20'000'000, 10.0), "");
+  EXPECT_NE(runaway_division(20'000'001, 1.0).find("there would be 20000001 cells (at most 2e+07)"), std::string::npos);
+  EXPECT_NE(runaway_division(100, 10.1).find("10.1 times shorter than those at the start"), std::string::npos);
 }
 
 TYPED_TEST(Effects, DivisionThresholdFollowsTheDistanceFromTheTip) {
   constexpr int dim = TypeParam::value;
   this->fill_root();
   // 0.009 at the tip, 0.009 (1 + 100 s^2) further up: cells of 0.01 divide for s < 0.0333
-  DivisionEffect<dim> division(this->solver, {0.009, 1.0, 100.0, 0.0});
+  DivisionEffect<dim> division(this->solver, {0.009, 1.0, 100.0, 0.0, {}});
   const std::vector<double> s = this->tissue.cells.distance_to_tip.values();
-  this->run(this->solver.hooks().window_start);
+  this->run(this->solver.hooks().division);
   for (std::size_t i = 0; i < s.size(); ++i) EXPECT_EQ(this->tissue.cells.generation[i], s[i] < 1.0 / 30.0 ? 1 : 0);
 }
 
@@ -239,7 +273,7 @@ TYPED_TEST(Effects, DivisionEvensOutSpacingAlongTheRootOnly) {
   SolverOptions options;
   options.step_h = 1e-3;
   Solver<dim> running(options);
-  DivisionEffect<dim> division(running, {1.0, 1.0, 0.0, 0.0});  // nothing is long enough to divide
+  DivisionEffect<dim> division(running, {1.0, 1.0, 0.0, 0.0, {}});  // nothing is long enough to divide
   std::array<int, dim> counts;
   counts.fill(4);
   counts[0] = 40;
@@ -258,8 +292,8 @@ TYPED_TEST(Effects, DivisionEvensOutSpacingAlongTheRootOnly) {
   stretch_uniformly(running);
   running.prepare();
   running.advance_window(5);
-  // both sides of a pair share its gap at 25 times the strain rate: 0.05 in a window of 0.005 h. The layer has a gap behind it
-  // and an overlap before it, its neighbours have one of them
+  // both sides of a pair share its gap at 25 times the strain rate: 0.05 in a window of 0.005 h. The layer has a gap
+  // behind it and an overlap before it, its neighbours have one of them
   double sum = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto id = static_cast<std::size_t>(cells.cell_id[i]);
@@ -277,7 +311,7 @@ TYPED_TEST(Effects, DivisionEvensOutSpacingOfFreeCellsOnly) {
   SolverOptions options;
   options.step_h = 1e-3;
   Solver<dim> running(options);
-  DivisionEffect<dim> division(running, {1.0, 1.0, 0.0, 0.0});
+  DivisionEffect<dim> division(running, {1.0, 1.0, 0.0, 0.0, {}});
   std::array<int, dim> counts;
   counts.fill(4);
   counts[0] = 40;
@@ -325,7 +359,7 @@ TYPED_TEST(Effects, ProbeAtAPointFollowsTheNearestCellAndItsDescendants) {
       const LongestAxis<dim> axis = longest_axis<dim>(cells.shape[mother]);
       cells.divide(mother, axis.direction, axis.length_mm, 5000 + 2 * divisions, 5001 + 2 * divisions);
     }
-    const ProbeReading reading = probe.read(this->tissue);
+    const ProbeReading reading = probe.read();
     EXPECT_EQ(reading.cells, divisions + 1.0);
     EXPECT_NEAR(reading.volume, std::pow(0.01, dim), 1e-16);
     // the centroid of the descendants is where the cell was
@@ -337,7 +371,7 @@ TYPED_TEST(Effects, ProbeAtAPointFollowsTheNearestCellAndItsDescendants) {
   }
   // sorting the store does not lose it
   cells.permute(this->random.permutation(cells.size()));
-  EXPECT_NEAR(probe.read(this->tissue).x_mm, centre[0], 1e-14);
+  EXPECT_NEAR(probe.read().x_mm, centre[0], 1e-14);
 }
 
 TYPED_TEST(Effects, ProbeOfABinReadsMeansWeightedByVolume) {
@@ -361,7 +395,7 @@ TYPED_TEST(Effects, ProbeOfABinReadsMeansWeightedByVolume) {
   const std::size_t fields = cells.fields().size();
   ProbeEffect<dim> probe(this->solver, {"bin", {}, std::array{0.1, 0.15}});
   EXPECT_EQ(cells.fields().size(), fields);  // a bin follows no cell: no column
-  const ProbeReading reading = probe.read(this->tissue);
+  const ProbeReading reading = probe.read();
   EXPECT_EQ(reading.cells, count);
   EXPECT_GT(count, 0.0);
   EXPECT_NEAR(reading.volume, volume, 1e-12);
@@ -372,18 +406,20 @@ TYPED_TEST(Effects, ProbeOfABinReadsMeansWeightedByVolume) {
   EXPECT_NEAR(reading.cell_length_mm, 0.01, 1e-12);
 }
 
-TYPED_TEST(Effects, ProbeOfAnEmptyBinReadsZeros) {
+TYPED_TEST(Effects, ProbeOfAnEmptyBinReadsNoNumbers) {
   constexpr int dim = TypeParam::value;
   this->fill_root();
   ProbeEffect<dim> probe(this->solver, {"bin", {}, std::array{5.0, 6.0}});
-  const ProbeReading reading = probe.read(this->tissue);
+  const ProbeReading reading = probe.read();
   EXPECT_EQ(reading.cells, 0.0);
   EXPECT_EQ(reading.volume, 0.0);
-  EXPECT_EQ(reading.x_mm, 0.0);
+  const std::vector<double> values = reading.values();
+  EXPECT_TRUE(std::all_of(values.begin() + 2, values.end(), [](double mean) { return std::isnan(mean); }));
 }
 
 TYPED_TEST(Effects, ProbeNamesAColumnForEveryNumberOfAReading) {
-  EXPECT_EQ(ProbeEffect<TypeParam::value>::columns().size() * sizeof(double), sizeof(ProbeReading));
+  ProbeEffect<TypeParam::value> probe(this->solver, {"bin", {}, std::array{0.1, 0.15}});
+  EXPECT_EQ(probe.side_table()->columns.size() * sizeof(double), sizeof(ProbeReading));
 }
 
 }  // namespace

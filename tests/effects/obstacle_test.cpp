@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "root_sph/effects/obstacle.hpp"
+#include "root_sph/effects/obstacle/obstacle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -116,6 +116,7 @@ struct BlockOnAPlane {
   Tissue<Dim>& tissue() { return solver.tissue(); }
   void find() {
     std::vector<Vec<Dim>> stiffness(tissue().cells.size(), Vec<Dim>::Zero());
+    for (auto& [name, pass] : solver.hooks().operators) pass(tissue());
     for (auto& [name, pass] : solver.hooks().stiffness) pass(tissue(), stiffness);
     added_stiffness = stiffness;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Signed distances against points sampled on the surfaces.
-#include "root_sph/effects/shapes.hpp"
+#include "root_sph/effects/obstacle/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -69,7 +69,9 @@ double checked_longest_edge(const Shell& shell) {
   int edges = 0;
   for (const auto& [edge, count] : directed) {
     const bool rim = !directed.contains({edge.second, edge.first});
-    if (rim) EXPECT_TRUE(next_on_rim.emplace(edge.first, edge.second).second);
+    if (rim) {
+      EXPECT_TRUE(next_on_rim.emplace(edge.first, edge.second).second);
+    }
     edges += rim ? 2 : 1;
   }
   EXPECT_EQ(corners.size(), shell.positions().size());
@@ -125,7 +127,9 @@ TEST(Shell, StaysCloseKnitThroughAStretchAndBack) {
     ever.insert(next.begin(), next.end());
     now = next;
     EXPECT_LE(checked_longest_edge(shell), marker_mm) << step;
-    if (step == 79) EXPECT_GT(shell.ids().size(), 2 * first);
+    if (step == 79) {
+      EXPECT_GT(shell.ids().size(), 2 * first);
+    }
   }
   EXPECT_LT(shell.ids().size(), 3 * first);
 }

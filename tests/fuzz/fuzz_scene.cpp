@@ -7,14 +7,15 @@
 #include <string_view>
 
 #include "root_sph/core/errors.hpp"
-#include "root_sph/scene/read_scene.hpp"
+#include "root_sph/effects/table.hpp"
 #include "root_sph/scene/write_scene.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     const rootsoil::Scene scene = rootsoil::parse_scene({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
-    const std::string resolved = rootsoil::resolved_toml(scene);
-    if (rootsoil::resolved_toml(rootsoil::parse_scene(resolved, "fuzz.toml")) != resolved) std::abort();
+    const std::string resolved = rootsoil::resolved_toml(rootsoil::language(), scene);
+    if (rootsoil::resolved_toml(rootsoil::language(), rootsoil::parse_scene(resolved, "fuzz.toml")) != resolved)
+      std::abort();
   } catch (const rootsoil::InputError&) {
   }
   return 0;

@@ -30,6 +30,7 @@ cells_file = "{}"
 E_axial_MPa = 1020
 
 [numerics]
+stepper = "symplectic"
 window_steps = 1
 
 [output]

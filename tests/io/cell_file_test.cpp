@@ -154,5 +154,28 @@ TEST(CellFile, WhatIsWrongInARowIsSaidWithItsLineAndColumn) {
   }
 }
 
+TEST(CellFile, KnowsTheLineOfEveryCell) {
+  const std::vector<MeasuredCell> cells = parse(header + row + "\n" + replaced(row, "7, 1000", "8, 1020"));
+  ASSERT_EQ(cells.size(), 2u);
+  EXPECT_EQ(cells[0].line, 2);
+  EXPECT_EQ(cells[1].line, 4);
+}
+
+TEST(CellFile, CellsOutOfProportionAreRefused) {
+  const std::string others = replaced(row, "7,", "1,") + replaced(row, "7,", "2,");
+  const auto with = [&](const std::string& semi_axes) {
+    return header + others + replaced(row, "20, 10, 5", semi_axes);
+  };
+  EXPECT_NO_THROW(parse(with("0.2, 0.2, 0.1")));
+  for (const char* part :
+       {"cells.csv:4", "cell 7 is out of proportion", "3.22e-05 mm large", "median cell 0.0161 mm"}) {
+    expect_contains(refusal(with("0.02, 0.02, 0.02")), part);
+  }
+  expect_contains(refusal(with("2000, 2000, 2000")), "cell 7 is out of proportion");
+  for (const char* part : {"cells.csv:4", "r3 (um)", "r1 = 200, r3 = 1", "at most 100 times r3"}) {
+    expect_contains(refusal(with("200, 100, 1")), part);
+  }
+}
+
 }  // namespace
 }  // namespace rootsoil

@@ -47,8 +47,11 @@ TEST(Files, WhatCannotBeReadOrWrittenIsNamed) {
   const TemporaryFolder folder;
   test::expect_contains(test::message_of<FileError>([&] { write_text_atomically(folder / "no/such", "x"); }),
                         "no/such: cannot be written: No such file or directory");
-  test::expect_contains(test::message_of<FileError>([&] { read_whole_file(folder / "none"); }), "No such file");
-  test::expect_contains(test::message_of<FileError>([&] { read_whole_file(folder.path()); }), "it is a folder");
+  for (const auto& [path, reason] : {std::pair(folder / "none", "No such file"), {folder.path(), "Is a directory"}}) {
+    const std::string message = test::message_of<FileError>([&] { read_whole_file(path); });
+    test::expect_contains(message, reason);
+    test::expect_contains(message, "\n  to do:   check the path");
+  }
 }
 
 TEST(RunFolder, IsCreatedWithItsParents) {

@@ -34,6 +34,18 @@ TEST(History, ARowIsOnTheDiskAtOnceWithRoundTripPrecision) {
   EXPECT_EQ(value, 1.0 / 3.0);
 }
 
+TEST(History, WhatIsNotKnownIsEmpty) {
+  const TemporaryFolder folder;
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  {
+    HistoryWriter history(folder / "history.csv", columns);
+    append(history, 0.0, unknown, 1.0);
+    append(history, 0.1, 1.0, unknown);
+  }
+  const HistoryWriter history(folder / "history.csv", columns, 1.0);
+  EXPECT_EQ(read_whole_file(folder / "history.csv"), "time_h,cells,tip_x_mm\n0,,1\n0.1,1,\n");
+}
+
 TEST(History, GoesOnWithoutLaterAndHalfRows) {
   const TemporaryFolder folder;
   const auto path = folder / "history.csv";

@@ -62,29 +62,37 @@ double largest_distance_mm(const Sleeping<Dim>& a, const Sleeping<Dim>& b) {
 }
 
 template <int Dim>
-void expect_the_same_growth(const std::vector<std::string>& overrides, double hours, double apart_at_most_cells) {
+void expect_the_same_growth(const std::vector<std::string>& overrides, double hours) {
   Sleeping<Dim> awake(steady, overrides), asleep(steady + sleep, overrides);
   awake.advance_to(hours);
   asleep.advance_to(hours);
   const double share = static_cast<double>(asleep.at_rest()) / static_cast<double>(asleep.tissue.cells.total());
-  const double apart = largest_distance_mm(awake, asleep) / awake.scene.root.cell_size_mm;
-  record("cells at rest/all", share);
-  record("largest difference of a cell's place (cells)", apart);
-  EXPECT_GT(share, 0.3);
-  EXPECT_LT(apart, apart_at_most_cells);
-  EXPECT_NEAR(asleep.solver.axis().length_mm(), awake.solver.axis().length_mm(), apart_at_most_cells * awake.scene.root.cell_size_mm);
-  for (std::size_t i = 0; i < asleep.tissue.cells.total(); ++i) {  // distances of cells at rest go on as well
+  const double cell_mm = awake.scene.root.cell_size_mm;
+  double of_distance_mm = 0.0;  // distances of cells at rest go on as well
+  for (std::size_t i = 0; i < asleep.tissue.cells.total(); ++i) {
     const double s = asleep.solver.axis().tip_mm()[0] - asleep.tissue.cells.position[i][0];
-    ASSERT_NEAR(asleep.tissue.cells.distance_to_tip[i], s, 0.1 * awake.scene.root.cell_size_mm);
+    of_distance_mm = std::max(of_distance_mm, std::abs(asleep.tissue.cells.distance_to_tip[i] - s));
   }
+  record("cells at rest/all", share);
+  EXPECT_GT(share, 0.3);
+  expect_within_record("largest difference of a cell's place (cells)", largest_distance_mm(awake, asleep) / cell_mm);
+  expect_within_record("difference of length (cells)",
+                       (asleep.solver.axis().length_mm() - awake.solver.axis().length_mm()) / cell_mm);
+  expect_within_record("largest error of a distance from the tip (cells)", of_distance_mm / cell_mm);
 }
 
 /// What the tolerance allows: 1e-4 /h over an hour and the 50 cells that sleep.
-TEST(Sleep, TheRootGrowsAndDividesAsIfAllWereAwake) { expect_the_same_growth<2>({}, 1.0, 5e-3); }
+TEST(Sleep, TheRootGrowsAndDividesAsIfAllWereAwake) { expect_the_same_growth<2>({}, 1.0); }
+
+/// A step is long: cells fall asleep in several batches, and distances of those at rest must not lag behind.
+TEST(Sleep, WithoutInertia) {
+  expect_the_same_growth<2>({"numerics.stepper=quasi_static", "numerics.step_h=0.05"}, 2.0);
+}
 
 /// The start rings more in 3D, in the mature part as well, until it sleeps.
 TEST(Sleep, In3D) {
-  expect_the_same_growth<3>({"scene.dimension=3", "root.cell_size_mm=0.015", "root.length_mm=1.2", "numerics.eta=1.3"}, 0.3, 1e-2);
+  expect_the_same_growth<3>({"scene.dimension=3", "root.cell_size_mm=0.015", "root.length_mm=1.2", "numerics.eta=1.3"},
+                            0.3);
 }
 
 /// A change of the pressure differential wakes all cells, and they take up the new stress.
@@ -100,12 +108,11 @@ TEST(Sleep, AChangeOfPressureWakesIt) {
   EXPECT_GT(run.at_rest(), 300u);  // and it sleeps again
   double sum = 0.0, n = 0.0;
   for (std::size_t i = 0; i < run.tissue.cells.total(); ++i) {
-    if (run.tissue.cells.clamped[i] == hold::at_base || run.tissue.cells.distance_to_tip[i] > 0.8) continue;
+    if (run.tissue.is_base(i) || run.tissue.cells.distance_to_tip[i] > 0.8) continue;
     sum += run.tissue.cells.stress[i][0];
     n += 1.0;
   }
-  record("axial stress/pressure", sum / n / 0.5);
-  EXPECT_NEAR(sum / n / 0.5, 1.0, 0.02);
+  expect_within_record("axial stress/pressure - 1", sum / n / 0.5 - 1.0);
 }
 
 /// A plate in the tip's way: thrust goes through the whole root, which must wake to carry it.
@@ -128,15 +135,14 @@ friction = 0.5
   awake.advance_to(0.6);
   const auto force = [](const Sleeping<2>& run) {
     double sum = 0.0;
-    for (const auto& effect : run.built.model->effects) sum -= effect->contact_force_N()[0];
+    for (const auto& effect : run.model->effects) sum -= effect->contact_force_N()[0];
     return sum;
   };
   record("force awake (N/mm)", force(awake));
-  record("force asleep/awake", force(asleep) / force(awake));
   EXPECT_GT(most, 300u);
   EXPECT_TRUE(woke);
   ASSERT_GT(force(awake), 0.01);
-  EXPECT_NEAR(force(asleep) / force(awake), 1.0, 0.02);
+  expect_within_record("force asleep/awake - 1", force(asleep) / force(awake) - 1.0);
 }
 
 }  // namespace

@@ -64,8 +64,10 @@ std::vector<Case> cases() {
       {"soil_too_soft", minimal + replaced(soil, "= 300", "= 0.9"), "soil.E_MPa", "at least 20 times"},
       {"soil_without_pressure", minimal + replaced(soil, "= 0.05", "= 0"), "soil.confining_pressure_MPa",
        "nothing to pack by"},
+      {"soil_without_damping", minimal + soil + "damping = 0\n", "soil.damping", "don't come to rest"},
+      {"soil_with_hardly_any_damping", minimal + soil + "damping = 0.009\n", "soil.damping", "0.01 to 0.95"},
       {"soil_friction_a_coefficient", minimal + soil + "friction_deg = 95\n", "soil.friction_deg", "this is an angle"},
-      {"soil_density_negative", minimal + soil + "density_N_h2_mm4 = -1\n", "soil.density_N_h2_mm4", "above 0"},
+      {"soil_density_negative", minimal + soil + "density_N_h2_mm4 = -1\n", "soil.density_N_h2_mm4", "at least 1e-20"},
       {"soil_density_twice", minimal + soil + "density_N_h2_mm4 = 1\ninertial_number_max = 0.01\n",
        "soil.inertial_number_max", "exclude each other"},
       {"soil_porosity_impossible", minimal + soil + "porosity = 0.6\n", "soil.porosity", "can't be packed like that"},
@@ -198,7 +200,8 @@ std::vector<Case> cases() {
       {"plane_without_direction", minimal + plane, "obstacle[1]", "neither normal nor angle_deg"},
       {"plane_with_two_directions", minimal + plane + "normal = [-1, 0]\nangle_deg = 90\n", "obstacle[1].angle_deg",
        "exclude each other"},
-      {"plane_without_normal", minimal + plane + "normal = [0, 0]\n", "obstacle[1].normal", "no direction"},
+      {"plane_without_normal", minimal + plane + "normal = [0, 0]\n", "obstacle[1].normal",
+       "too short or too long to tell its direction"},
       {"plane_with_radius", minimal + plane + "normal = [-1, 0]\nradius_mm = 1\n", "obstacle[1].radius_mm",
        "only where shape is disc or sphere"},
       {"box_without_size", minimal + "\n[[obstacle]]\nshape = \"box\"\nposition_mm = [1, 0]\n",
@@ -278,7 +281,7 @@ TEST(SceneErrors, InOverridesOfListElements) {
 }
 
 TEST(SceneErrors, InAccuracySayWhereTheyComeFrom) {
-  const InputProblem p = problem_of(minimal, {}, "blanced");
+  const InputProblem p = problem_of(minimal, {}, "balancd");
   EXPECT_EQ(p.file, "from --accuracy");
   EXPECT_NE(p.remedy.find("balanced"), std::string::npos);
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "root_sph/core/errors.hpp"
-#include "root_sph/scene/read_scene.hpp"
+#include "root_sph/effects/table.hpp"
 
 namespace rootsoil::testing {
 
@@ -47,6 +47,8 @@ c_g = -1
 )";
 
 inline const std::string soil = R"(
+[numerics]
+stepper = "symplectic"
 [soil]
 box_from_mm = [0.1, -1]
 box_to_mm = [2, 1]

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "root_sph/effects/obstacle.hpp"
+#include "root_sph/effects/obstacle/obstacle.hpp"
 #include "root_sph/exchange/under_relaxation.hpp"
 #include "soil_coupling/twins/spring_bed.hpp"
 #include "tests/soil/soil_scene.hpp"
@@ -14,6 +14,7 @@
 namespace rootsoil::soil_test {
 namespace {
 
+using physics::expect_within_record;
 using physics::record;
 
 // ---- formulas -------------------------------------------------------------------------------------
@@ -94,12 +95,11 @@ TEST(Markers, StayCloseKnitAndAtTheirDepthThroughTwentyHoursOfGrowthAndDivision)
   record("markers", static_cast<double>(now.size()));
   record("largest gap/radius", largest_gap_now / size.radius_mm);
   record("depth/radius before", depth_before / size.radius_mm);
-  record("depth/radius after", mean_depth() / size.radius_mm);
   EXPECT_GT(run.tissue.cells.size(), 2 * cells_before);
   EXPECT_GT(run.solver.axis().length_mm(), 3.0 * length_before);
   EXPECT_LE(largest_gap_now, size.radius_mm);
   EXPECT_EQ(reused, 0);
-  EXPECT_NEAR(mean_depth(), depth_before, 0.25 * size.radius_mm);
+  expect_within_record("change of depth/radius", (mean_depth() - depth_before) / size.radius_mm);
 }
 
 TEST(Markers, ASoilOutOfReachChangesNoBitOfTheRoot) {
@@ -141,7 +141,9 @@ TEST(Markers, OnlyThoseNearTheSoilAreShownToItAndComeBackUnderNewIds) {
   EXPECT_LT(shown(2).size(), shown(0).size());
   EXPECT_EQ(shown(5).size(), shown(0).size());
   for (const std::int64_t id : shown(5)) {
-    if (!shown(2).contains(id)) EXPECT_FALSE(shown(0).contains(id)) << id;
+    if (!shown(2).contains(id)) {
+      EXPECT_FALSE(shown(0).contains(id)) << id;
+    }
   }
 }
 
@@ -158,7 +160,8 @@ TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
                    p.friction = 0.5;
                    return std::make_unique<twins::HalfSpace>(p);
                  });
-  const double free_speed = closed_form_flow<2>(run.scene, run.scene.root.length_mm).tip_speed_mm_h;
+  const double free_speed =
+      closed_form_flow<2>(run.scene, run.scene.root.length_mm, pressure_MPa(run.scene, 0.0)).tip_speed_mm_h;
   double from_mm = run.solver.axis().length_mm(), from_h = 0.0, impulse = 0.0, worst = 0.0;
   double n = 0.0, sf = 0.0, sv = 0.0, sff = 0.0, sfv = 0.0, slowest = 1.0, fastest = 0.0;
   run.advance_to(3.0, [&] {
@@ -179,16 +182,12 @@ TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const double work = run.contact.root_work_Nmm() / run.contact.soil_work_Nmm();
   record("speed/free speed, fastest", fastest);
   record("speed/free speed, slowest", slowest);
-  record("speed, worst deviation/free speed", worst);
-  record("line's speed at no thrust/free speed", at_rest);
-  record("line's thrust at no speed/arrest force", -at_rest / slope);
-  record("work, root/soil", work);
   EXPECT_GT(fastest, 0.85);
   EXPECT_LT(slowest, 0.15);
-  EXPECT_LT(worst, 0.03);
-  EXPECT_NEAR(at_rest, 1.0, 0.03);
-  EXPECT_NEAR(-at_rest / slope, 1.0, 0.03);
-  EXPECT_NEAR(work, 1.0, 0.01);
+  expect_within_record("speed: worst deviation/free speed", worst);
+  expect_within_record("line's speed at no thrust/free speed - 1", at_rest - 1.0);
+  expect_within_record("line's thrust at no speed/arrest force - 1", -at_rest / slope - 1.0);
+  expect_within_record("work: root/soil - 1", work - 1.0);
 }
 
 struct PlateForce {
@@ -201,7 +200,7 @@ PlateForce press(physics::SceneRun<2>& run) {
   double n = 0.0, sum = 0.0, squares = 0.0;
   run.advance_to(1.1, [&] {
     double f = 0.0;
-    for (const auto& effect : run.built.model->effects) f -= effect->contact_force_N()[0];
+    for (const auto& effect : run.model->effects) f -= effect->contact_force_N()[0];
     f /= arrest_N(run);
     force.peak = std::max(force.peak, f);
     if (run.tissue.time_h < 0.8) return;
@@ -215,22 +214,18 @@ PlateForce press(physics::SceneRun<2>& run) {
   return force;
 }
 
-void expect_good(const PlateForce& force) {
-  record("peak/arrest force", force.peak);
-  record("mean/arrest force", force.mean);
-  record("largest once settled/arrest force", force.settled_peak);
-  record("noise (rms/mean)", force.noise);
-  EXPECT_LT(force.peak, 1.2);
-  EXPECT_LT(force.settled_peak, 1.05);
-  EXPECT_NEAR(force.mean, 1.0, 0.03);
-  EXPECT_LT(force.noise, 0.03);
+void expect_that_of_arrest(const std::string& on, const PlateForce& force) {
+  expect_within_record(on + ": peak/arrest force - 1", force.peak - 1.0);
+  expect_within_record(on + ": mean/arrest force - 1", force.mean - 1.0);
+  expect_within_record(on + ": largest once settled/arrest force - 1", force.settled_peak - 1.0);
+  expect_within_record(on + ": noise (rms/mean)", force.noise);
 }
 
 /// At 70 N/mm the force is 3 % too large, at 100 N/mm 5 % (docs/decisions/0017).
 TEST(Thrust, OnAFixedPlateTheForceIsSteadyAndThatOfAnObstacle) {
   SoilRun<2> soil({}, predicting(), [](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, 50.0)); });
   const PlateForce by_soil = press(soil);
-  expect_good(by_soil);
+  expect_that_of_arrest("soil", by_soil);
   physics::SceneRun<2> obstacle(scene_text + R"(
 [[obstacle]]
 name = "plate"
@@ -240,46 +235,58 @@ normal = [-1.0, 0.0]
 friction = 0.0
 )");
   const PlateForce by_obstacle = press(obstacle);
-  expect_good(by_obstacle);
-  EXPECT_NEAR(by_soil.mean, by_obstacle.mean, 0.02);
+  expect_that_of_arrest("obstacle", by_obstacle);
+  expect_within_record("mean by soil less by obstacle/arrest force", by_soil.mean - by_obstacle.mean);
 }
 
+/// Against the same plate with softer contacts the held force settles, and nothing is said (docs/decisions/0018).
 TEST(Thrust, AHeldForcePumpsEnergyOnARigidPlateAndTheRunSaysSo) {
-  SoilRun<2> held({}, {}, [](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, 100.0)); });
-  std::string notes;
-  double peak = 0.0;
-  held.advance_to(0.25, [&] {
-    for (const std::string& note : held.contact.take_notes()) notes += note;
-    peak = std::max(peak, held.axial_force_N() / arrest_N(held));
-  });
-  record("peak/arrest force", peak);
-  EXPECT_NE(notes.find("stability limit"), std::string::npos);
-  EXPECT_GT(peak, 1.5);
+  SoilContactParameters no_ramp;
+  no_ramp.ramp_h = 0.0;
+  const auto press_until = [&](double stiffness_N_mm, double until_h, double& peak) {
+    SoilRun<2> held({}, no_ramp,
+                    [&](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, stiffness_N_mm)); });
+    std::string notes;
+    held.advance_to(until_h, [&] {
+      for (const std::string& note : held.contact.take_notes()) notes += note;
+      peak = std::max(peak, held.axial_force_N() / arrest_N(held));
+    });
+    return notes;
+  };
+  double stiff = 0.0, soft = 0.0;
+  EXPECT_NE(press_until(100.0, 0.125, stiff).find("pumps energy"), std::string::npos);
+  EXPECT_EQ(press_until(5.0, 0.25, soft), "");
+  record("peak/arrest force, 100 N/mm", stiff);
+  record("peak/arrest force, 5 N/mm", soft);
+  EXPECT_GT(stiff, 1.5);
+  EXPECT_LT(soft, 1.0);  // 0.93, and rising to 1
 }
 
 TEST(Thrust, LongerIntervalsStopAtTheSameForce) {
   SoilContactParameters parameters = predicting();
   parameters.windows_per_interval = 2;
   SoilRun<2> run({}, parameters, [](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, 20.0)); });
-  expect_good(press(run));
+  expect_that_of_arrest("soil", press(run));
 }
 
 /// The same in 3D, by a shell of markers: p (1 - 2 nu_A) times the section.
+/// At this radius six cells across have the section of the circle, and the lattice is left as it is.
 TEST(Thrust, In3DGrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const SoilContactParameters parameters = predicting();
-  SoilRun<3> run({"scene.dimension=3", "root.length_mm=0.8", "root.cell_size_mm=0.04", "numerics.step_h=2e-4",
-                  "numerics.window_steps=5", "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
-                 parameters, [](const Scene& s) {
-                   twins::HalfSpaceParameters p = plate(s, 0.3, 0.0);
-                   p.backing_N_mm = 0.5;
-                   return std::make_unique<twins::HalfSpace>(p);
-                 });
+  SoilRun<3> run(
+      {"scene.dimension=3", "root.length_mm=0.8", "root.radius_mm=0.1276", "root.cell_size_mm=0.04",
+       "numerics.step_h=2e-4", "numerics.window_steps=5", "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
+      parameters, [](const Scene& s) {
+        twins::HalfSpaceParameters p = plate(s, 0.3, 0.0);
+        p.backing_N_mm = 0.5;
+        return std::make_unique<twins::HalfSpace>(p);
+      });
   const auto arrest = [&] {
     const double radius = physics::radius_mm<3>(run.tissue, 0.2, 0.5);
-    return initial_pressure_MPa(run.scene) * (1.0 - 2.0 * run.scene.tissue.nu_axial) * std::numbers::pi * radius *
-           radius;
+    return pressure_MPa(run.scene, 0.0) * (1.0 - 2.0 * run.scene.tissue.nu_axial) * std::numbers::pi * radius * radius;
   };
-  const double free_speed = closed_form_flow<3>(run.scene, run.scene.root.length_mm).tip_speed_mm_h;
+  const double free_speed =
+      closed_form_flow<3>(run.scene, run.scene.root.length_mm, pressure_MPa(run.scene, 0.0)).tip_speed_mm_h;
   run.advance_to(0.3);
   double worst = 0.0, from_mm = run.solver.axis().length_mm(), from_h = run.tissue.time_h, impulse = 0.0, slowest = 1.0;
   double largest_edge = 0.0;
@@ -305,15 +312,12 @@ TEST(Thrust, In3DGrowthFallsLinearlyAndStopsAtTheClosedForm) {
   record("cells", static_cast<double>(run.tissue.cells.size()));
   record("markers", static_cast<double>(run.contact.surface().ids().size()));
   record("free speed, mm/h", free_speed);
-  record("final force/arrest force", run.axial_force_N() / arrest());
   record("speed/free speed, slowest", slowest);
-  record("speed, worst deviation/free speed", worst);
   record("longest edge/radius", largest_edge);
-  record("work, root/soil", run.contact.root_work_Nmm() / run.contact.soil_work_Nmm());
-  EXPECT_LT(worst, 0.03);
-  EXPECT_NEAR(run.axial_force_N() / arrest(), 1.0, 0.05);
+  expect_within_record("speed: worst deviation/free speed", worst);
+  expect_within_record("final force/arrest force - 1", run.axial_force_N() / arrest() - 1.0);
+  expect_within_record("work: root/soil - 1", run.contact.root_work_Nmm() / run.contact.soil_work_Nmm() - 1.0);
   EXPECT_LE(largest_edge, 1.0);
-  EXPECT_NEAR(run.contact.root_work_Nmm() / run.contact.soil_work_Nmm(), 1.0, 0.01);
 }
 
 /// Springs all along the shaft: what holds the root is the sum over its surface, and every history column says so.
@@ -331,11 +335,12 @@ TEST(Springs, TheHistoryAddsUp) {
   record("axial force, N/mm", row.at("soil_axial_force_N"));
   EXPECT_GT(row.at("soil_axial_force_N"), 1e-3);
   // forces of the next interval are a step further than those that acted
-  EXPECT_NEAR(row.at("soil_load_N"), load, 0.01 * load);
-  EXPECT_NEAR(run.axial_force_N(), -on_markers[0], 0.01 * load);
-  EXPECT_NEAR(row.at("soil_axial_force_N"), run.axial_force_N(), 0.01 * load);
+  expect_within_record("load: history/markers - 1", row.at("soil_load_N") / load - 1.0);
+  expect_within_record("axial force: cells less markers/load", (run.axial_force_N() + on_markers[0]) / load);
+  expect_within_record("axial force: history less cells/load",
+                       (row.at("soil_axial_force_N") - run.axial_force_N()) / load);
   EXPECT_GT(row.at("soil_tied"), 50.0);
-  const double free_speed = closed_form_flow<2>(run.scene, 1.2).tip_speed_mm_h;
+  const double free_speed = closed_form_flow<2>(run.scene, 1.2, pressure_MPa(run.scene, 0.0)).tip_speed_mm_h;
   EXPECT_LT(row.at("soil_expected_tip_speed_mm_h"), free_speed);
   EXPECT_GT(row.at("soil_expected_tip_speed_mm_h"), 0.5 * free_speed);
 }

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
+#include "root_sph/app/commands.hpp"
 #include "root_sph/io/checkpoint.hpp"
 #include "root_sph/io/files.hpp"
 #include "root_sph/io/series.hpp"
-#include "root_sph/scene/commands.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/soil/soil_scene.hpp"
 
@@ -21,21 +22,27 @@ namespace {
 namespace fs = std::filesystem;
 using test::TemporaryFolder;
 
-Scene contact_scene() {
-  return parse_scene(scene_text, "test.toml",
-                     {"scene.duration_h=0.4", "numerics.window_steps=5", "output.every_h=0.1",
-                      "output.checkpoint_every_h=0.1", "numerics.step_h=2e-4"});
+/// The scene, coupled to a soil: three windows an interval, so that checkpoints fall inside one.
+Scene coupled(Scene scene) {
+  SoilContactSection contact;
+  contact.stiffness_predictor = true;
+  contact.ramp_h = 0.0;
+  contact.interval_h = 3 * scene.numerics.window_steps * *scene.numerics.step_h;
+  scene.all<SoilContactSection>().push_back(contact);
+  return scene;
 }
 
-/// A plate that the root meets after some 0.06 h; three windows an interval, so that checkpoints fall inside one.
-Soil plate_soil(const Scene& scene, const SoilStart&) {
-  Soil soil;
+Scene contact_scene() {
+  return coupled(parse_scene(scene_text, "test.toml",
+                             {"scene.duration_h=0.4", "numerics.window_steps=5", "output.every_h=0.1",
+                              "output.checkpoint_every_h=0.1", "numerics.step_h=2e-4"}));
+}
+
+/// A plate that the root meets after some 0.06 h.
+std::unique_ptr<SoilPort> plate_soil(const Scene& scene, const SoilStart&) {
   twins::HalfSpaceParameters p = plate(scene, 5.0);
   p.friction = 0.3;
-  soil.port = std::make_unique<twins::HalfSpace>(p);
-  soil.contact = predicting();
-  soil.contact.windows_per_interval = 3;
-  return soil;
+  return std::make_unique<twins::HalfSpace>(p);
 }
 
 int run(const fs::path& out, const SoilMaker& make_soil, bool resume = false, std::optional<double> until_h = {},
@@ -65,12 +72,15 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-/// A column of history.csv.
+/// A column of history.csv; not a number where a field is empty.
 std::vector<double> column_of(const std::string& history, const std::string& name) {
   const std::vector<std::string> rows = split(history, '\n'), names = split(rows.at(0), ',');
   const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   std::vector<double> values;
-  for (std::size_t k = 1; k < rows.size(); ++k) values.push_back(std::stod(split(rows[k], ',').at(at)));
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const std::vector<std::string> fields = split(rows[k] + ",.", ',');  // the last field may be empty, too
+    values.push_back(fields.at(at).empty() ? std::numeric_limits<double>::quiet_NaN() : std::stod(fields.at(at)));
+  }
   return values;
 }
 
@@ -96,10 +106,11 @@ TEST(SoilRun, ResumesInContactBitForBit) {
   }
   const std::vector<FrameInfo> frames = list_frames(folder / "whole/run.h5");
   ASSERT_EQ(frames.size(), 5u);
-  ASSERT_EQ(frames.back().points.size(), 1u);
-  EXPECT_EQ(frames.back().points[0].name, "markers");
+  const auto& infos = frames.back().tables;
+  const auto markers = std::find_if(infos.begin(), infos.end(), [](const auto& t) { return t.name == "markers"; });
+  ASSERT_NE(markers, infos.end());
   const Frame last = read_frame(folder / "whole/run.h5", 4);
-  const auto& columns = last.points.at(0).columns;
+  const auto& columns = last.tables.at(static_cast<std::size_t>(markers - infos.begin())).columns;
   const auto force = std::find_if(columns.begin(), columns.end(), [](const auto& c) { return c.name == "force"; });
   ASSERT_NE(force, columns.end());
   EXPECT_EQ(force->unit, "N");
@@ -111,9 +122,10 @@ TEST(SoilRun, ResumesInContactBitForBit) {
 
 /// Half of the root sleeps before it meets the plate, and is woken by it.
 TEST(SoilRun, ResumesAsleepBitForBit) {
-  const Scene scene = parse_scene(scene_text + "[sleep]\n", "test.toml",
-                                  {"scene.duration_h=0.4", "root.length_mm=2.4", "numerics.window_steps=5",
-                                   "output.every_h=0.02", "output.checkpoint_every_h=0.1", "numerics.step_h=2e-4"});
+  const Scene scene =
+      coupled(parse_scene(scene_text + "[sleep]\n", "test.toml",
+                          {"scene.duration_h=0.4", "root.length_mm=2.4", "numerics.window_steps=5",
+                           "output.every_h=0.02", "output.checkpoint_every_h=0.1", "numerics.step_h=2e-4"}));
   const TemporaryFolder folder;
   ASSERT_EQ(run(folder / "whole", plate_soil, false, {}, scene), 0);
   for (const double until_h : {0.022, 0.061, 0.2, 0.302}) {
@@ -130,10 +142,15 @@ TEST(SoilRun, ResumesAsleepBitForBit) {
 
 TEST(SoilRun, WithoutASoilNothingOfItExists) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run(folder / "none", {}), 0);
-  ASSERT_EQ(run(folder / "empty", [](const Scene&, const SoilStart&) { return Soil{}; }), 0);
-  EXPECT_EQ(read_checkpoint(folder / "none/checkpoint.h5"), read_checkpoint(folder / "empty/checkpoint.h5"));
-  EXPECT_EQ(read_whole_file(folder / "none/history.csv"), read_whole_file(folder / "empty/history.csv"));
+  Scene scene = contact_scene();
+  scene.all<SoilContactSection>().clear();
+  const auto unwanted = [](const Scene&, const SoilStart&) -> std::unique_ptr<SoilPort> {
+    throw std::logic_error("no effect called for a soil");
+  };
+  ASSERT_EQ(run(folder / "none", {}, false, {}, scene), 0);
+  ASSERT_EQ(run(folder / "offered", unwanted, false, {}, scene), 0);
+  EXPECT_EQ(read_checkpoint(folder / "none/checkpoint.h5"), read_checkpoint(folder / "offered/checkpoint.h5"));
+  EXPECT_EQ(read_whole_file(folder / "none/history.csv"), read_whole_file(folder / "offered/history.csv"));
   EXPECT_EQ(read_whole_file(folder / "none/history.csv").find("soil"), std::string::npos);
   EXPECT_EQ(read_whole_file(folder / "none/summary.json").find("\"soil"), std::string::npos);
   EXPECT_TRUE(state_files(folder / "none").empty());
@@ -165,19 +182,16 @@ class Grains final : public SoilPort {
 
 TEST(SoilRun, FramesHoldGrainsAndContacts) {
   const TemporaryFolder folder;
-  const auto grains = [](const Scene& scene, const SoilStart& start) {
-    Soil soil = plate_soil(scene, start);
-    soil.port = std::make_unique<Grains>(plate(scene, 5.0));
-    return soil;
-  };
+  const auto grains = [](const Scene& scene, const SoilStart&) { return std::make_unique<Grains>(plate(scene, 5.0)); };
   ASSERT_EQ(run(folder / "run", grains, false, 0.1), 0);
-  ASSERT_EQ(read_frame(folder / "run/run.h5", 0).points.size(), 1u);  // before the root is put in, markers only
+  ASSERT_EQ(read_frame(folder / "run/run.h5", 0).tables.size(),
+            2u);  // before the root is put in, markers and the closed form only
   const Frame frame = read_frame(folder / "run/run.h5", 1);
   const auto column = [&](const std::string& set, const std::string& name) -> const FrameColumn& {
-    const auto points =
-        std::find_if(frame.points.begin(), frame.points.end(), [&](const auto& p) { return p.name == set; });
-    if (points == frame.points.end()) throw std::runtime_error("no points " + set);
-    const auto& columns = points->columns;
+    const auto table =
+        std::find_if(frame.tables.begin(), frame.tables.end(), [&](const auto& p) { return p.name == set; });
+    if (table == frame.tables.end()) throw std::runtime_error("no table " + set);
+    const auto& columns = table->columns;
     const auto found = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
     if (found == columns.end()) throw std::runtime_error("no column " + name);
     return *found;
@@ -229,12 +243,10 @@ TEST(SoilRun, AFailureKeepsTheLastCheckpointOfBothSides) {
   ASSERT_EQ(run(folder / "whole", plate_soil), 0);
   for (const bool throws : {false, true}) {
     const fs::path out = folder / (throws ? "throws" : "answers NaN");
-    const auto failing = [&](const Scene& scene, const SoilStart& start) {
-      Soil soil = plate_soil(scene, start);
+    const auto failing = [&](const Scene& scene, const SoilStart&) {
       twins::HalfSpaceParameters p = plate(scene, 5.0);
       p.friction = 0.3;
-      soil.port = std::make_unique<Failing>(p, throws);
-      return soil;
+      return std::make_unique<Failing>(p, throws);
     };
     testing::internal::CaptureStderr();
     EXPECT_EQ(run(out, failing), static_cast<int>(ExitStatus::soil_failed));

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "root_sph/effects/soil_contact/soil_start.hpp"
 #include "soil_coupling/twins/half_space.hpp"
 #include "tests/physics/harness.hpp"
 
@@ -44,14 +45,16 @@ x_d_mm = 0.2
 constant_beyond_mm = 0.7
 [non_affine_control]
 [numerics]
+stepper = "symplectic"
 step_h = 5e-5
 midline_damping_per_h = 0
 [output]
 every_h = 1
 )";
 
-/// The tip moves 3e-4 cells in a step: with more, numerical inertia shows as force when the root meets a plate. No ramp:
-/// these roots start out of contact, and one that meets a plate while forces still rise presses too deep (17 % too hard).
+/// The tip moves 3e-4 cells in a step: with more, numerical inertia shows as force when the root meets a plate. No
+/// ramp: these roots start out of contact, and one that meets a plate while forces still rise presses too deep (17 %
+/// too hard).
 inline SoilContactParameters predicting() {
   SoilContactParameters parameters;
   parameters.stiffness_predictor = true;
@@ -70,7 +73,7 @@ inline twins::HalfSpaceParameters plate(const Scene& scene, double stiffness_N_m
 
 /// Force that arrests the root: p (1 - nu_A) times its width over the part that pushes.
 inline double arrest_N(const physics::SceneRun<2>& run) {
-  return initial_pressure_MPa(run.scene) * (1.0 - run.scene.tissue.nu_axial) * 2.0 *
+  return pressure_MPa(run.scene, 0.0) * (1.0 - run.scene.tissue.nu_axial) * 2.0 *
          physics::radius_mm<2>(run.tissue, 0.2, 0.6);
 }
 
@@ -81,16 +84,24 @@ class SoilRun : public physics::SceneRun<Dim> {
   template <class Make>
   SoilRun(const std::vector<std::string>& overrides, SoilContactParameters parameters, Make&& make,
           const std::string& text = scene_text)
-      : physics::SceneRun<Dim>(text, overrides),
-        contact(add_soil_contact<Dim>(this->scene, *this->built.model, std::move(parameters), make(this->scene))) {}
+      : physics::SceneRun<Dim>(text, overrides), contact(add_contact(std::move(parameters), make(this->scene))) {}
 
   /// Axial force of whatever touches the root, compression positive.
   double axial_force_N() const {
     double sum = 0.0;
-    for (const auto& effect : this->built.model->effects) sum -= effect->contact_force_N()[0];
+    for (const auto& effect : this->model->effects) sum -= effect->contact_force_N()[0];
     return sum;
   }
   SoilContactEffect<Dim>& contact;
+
+ private:
+  SoilContactEffect<Dim>& add_contact(SoilContactParameters parameters, std::unique_ptr<SoilPort> port) {
+    parameters.free_growth = free_growth<Dim>(this->scene);
+    this->model->effects.push_back(
+        std::make_unique<SoilContactEffect<Dim>>(this->solver, std::move(parameters), std::move(port)));
+    for (const auto& effect : this->model->effects) effect->prepare();  // sleep hears of it
+    return static_cast<SoilContactEffect<Dim>&>(*this->model->effects.back());
+  }
 };
 
 }  // namespace rootsoil::soil_test

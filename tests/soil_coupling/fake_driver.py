@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A soil's process without YADE, that behaves as its file name's environment variable FAKE_SOIL says: every way in which
-the real one can fail, on purpose and at once. The first interval always succeeds."""
+"""A soil's process without YADE, that behaves as its file name's environment variable FAKE_SOIL says: every way in
+which the real one can fail, on purpose and at once. The first interval always succeeds."""
 
 import json
 import os
@@ -48,6 +48,8 @@ while (request := channel.receive()) is not None:
             os.kill(os.getpid(), signal.SIGSTOP)
         if later and how == "exit":
             os._exit(7)
+        if later and how == "traceback":
+            raise ValueError("no such grain")
         if later and how == "throw":
             channel.answer("failed", "ZeroDivisionError: division by zero")
             os._exit(1)

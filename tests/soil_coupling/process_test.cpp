@@ -27,7 +27,7 @@ class Process : public testing::Test {
   }
   YadeSoil soil(const char* how) { return {listed_, {}, fake(how)}; }
   test::Folder folder_;
-  SoilRecipe listed_ = test::listed_grains("none.csv");
+  SoilRecipe listed_ = test::listed_grains({{{1.5, 1.5, 0}, 0.15}});
 };
 
 TEST_F(Process, ExchangesColumnsOfAnyLength) {
@@ -46,12 +46,17 @@ TEST_F(Process, ExchangesColumnsOfAnyLength) {
 }
 
 TEST_F(Process, SaysHowItEnded) {
-  const std::pair<const char*, const char*> cases[] = {
-      {"kill", "was killed by signal 9"},   {"crash", "was killed by signal 11"},
-      {"exit", "ended with status 7"},      {"throw", "ZeroDivisionError"},
-      {"stop", "(it is stopped)"},          {"late", "gave no answer for 0.5 s"},
-      {"nan", "a force is not finite"},     {"nan_number", "can't be read"},
-      {"sequence", "an answer to message"}, {"rows", "2 rows for interval 1 instead of 3"}};
+  const std::pair<const char*, const char*> cases[] = {{"kill", "was killed by signal 9"},
+                                                       {"crash", "was killed by signal 11"},
+                                                       {"exit", "ended with status 7"},
+                                                       {"throw", "ZeroDivisionError"},
+                                                       {"stop", "(it is stopped)"},
+                                                       {"late", "gave no answer for 0.5 s"},
+                                                       {"nan", "a force is not finite"},
+                                                       {"nan_number", "can't be read"},
+                                                       {"traceback", "ValueError: no such grain"},
+                                                       {"sequence", "an answer to message"},
+                                                       {"rows", "2 rows for interval 1 instead of 3"}};
   for (const auto& [how, words] : cases) {
     SCOPED_TRACE(how);
     YadeSoil s = soil(how);
@@ -59,6 +64,7 @@ TEST_F(Process, SaysHowItEnded) {
     const pid_t pid = s.process().pid();
     const std::string text = test::message_of<SoilError>([&] { s.advance(test::row_of_markers(1, 3, 0.1, 0.1)); });
     EXPECT_THAT(text, AllOf(HasSubstr(words), HasSubstr("in interval 1"), HasSubstr("checkpoint")));
+    EXPECT_THAT(text, Not(HasSubstr("Traceback")));
     if (std::string(how) == "kill") {
       EXPECT_THAT(text, HasSubstr("it said last:\ninterval 0\ninterval 1"));
     }
@@ -71,7 +77,7 @@ TEST_F(Process, SaysHowItEnded) {
 TEST_F(Process, AFailureAtTheStartIsToldApart) {
   EXPECT_THAT(test::message_of<SoilError>([&] { soil("missing"); }), HasSubstr("YADE can't be imported"));
   EXPECT_THAT(test::message_of<SoilError>([&] { soil("version"); }),
-              AllOf(HasSubstr("speaks version 99, this program version 1"), HasSubstr("while it started")));
+              AllOf(HasSubstr("speaks version 99, this program version 2"), HasSubstr("while it started")));
   SoilProcessOptions options = fake("mute");
   options.patience.start_s = 0.3;
   EXPECT_THAT(test::message_of<SoilError>([&] { SoilProcess p(options); }),

@@ -37,17 +37,17 @@ inline std::string write(const std::filesystem::path& path, const std::string& t
   return path.string();
 }
 
-/// A rigid box of 4 mm x 4 mm with the grains of a file; nothing presses on it.
-inline SoilRecipe listed_grains(const std::string& file) {
+/// A rigid box of 4 mm x 4 mm with these grains; nothing presses on it.
+inline SoilRecipe listed_grains(std::vector<SoilGrain> grains) {
   SoilRecipe r;
   r.box_from_mm = {-2, -2, 0};
   r.box_to_mm = {2, 2, 0};
-  r.walls = "rigid";
+  r.walls = SoilWalls::rigid;
   r.d_mean_mm = 0.3;
   r.d_min_mm = 0.25;
   r.d_max_mm = 0.35;
   r.d_spread = 1.0 / 6;
-  r.grains_file = file;
+  r.grains = std::move(grains);
   r.E_MPa = 300.0;
   r.density_N_h2_mm4 = 1e-4;
   return r;

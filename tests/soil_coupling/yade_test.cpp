@@ -23,9 +23,8 @@ class Yade : public testing::Test {
 
   /// A fixed stone at the origin, and a grain in a corner, far from everything.
   SoilRecipe stone() {
-    SoilRecipe r =
-        test::listed_grains(test::write(folder_ / "grains.csv", "x_mm,y_mm,z_mm,radius_mm\n1.5,1.5,0,0.15\n"));
-    r.obstacles.push_back({.name = "stone", .shape = "stone", .radius_mm = stone_radius_mm});
+    SoilRecipe r = test::listed_grains({{{1.5, 1.5, 0}, 0.15}});
+    r.obstacles.push_back({.name = "stone", .shape = SoilShape::stone, .radius_mm = stone_radius_mm});
     return r;
   }
 
@@ -91,6 +90,27 @@ TEST_F(Yade, MissingIsSaid) {
   EXPECT_THAT(text, AllOf(HasSubstr("can't be imported from"), HasSubstr("tools/setup.sh --soil")));
 }
 
+/// Validation keeps such damping out; whatever else keeps grains moving must end, too. Measured: 5 s.
+TEST_F(Yade, APackingThatNeverRestsEnds) {
+  SoilRecipe r = test::packed_grains();
+  r.box_from_mm = {0, -0.5, 0};
+  r.box_to_mm = {1, 0.5, 0};
+  r.damping = 0.0;
+  r.friction_deg = r.compaction_friction_deg = 0.0;
+  EXPECT_THAT(test::message_of<InputError>([&] { soil(r); }),
+              AllOf(HasSubstr("does not come to rest in 100000 steps"), HasSubstr("given:   damping 0,"),
+                    HasSubstr("to do:   take more damping")));
+}
+
+TEST_F(Yade, AListedGrainInAnObstacleIsRefused) {
+  SoilRecipe r = stone();
+  r.grains.push_back({{0.6, 0, 0}, 0.15});  // a third of its radius lies in the stone
+  EXPECT_EQ(soil(r).snapshot().id.size(), 2u);
+  r.grains.push_back({{0, -0.55, 0}, 0.15});
+  EXPECT_THAT(test::message_of<InputError>([&] { soil(r); }),
+              AllOf(HasSubstr("1 of the listed grains lie in the obstacle 'stone'"), HasSubstr("(0, -0.55, 0)")));
+}
+
 TEST_F(Yade, KilledStoppedOrThrowingIsASoilError) {
   options_.patience.step_at_least_s = 2.0;
   options_.patience.long_task_s = 60.0;
@@ -117,12 +137,12 @@ TEST_F(Yade, KilledStoppedOrThrowingIsASoilError) {
 /// Mechanics, eq. 4.23); in a layer per its depth.
 TEST_F(Yade, AGrainPressedOnTheRootFollowsTheLaw) {
   constexpr double grain_radius_mm = 0.15;
-  for (const std::string law : {"hertz_mindlin", "linear"}) {
-    SCOPED_TRACE(law);
+  for (const ContactLaw law : {ContactLaw::hertz_mindlin, ContactLaw::linear}) {
+    SCOPED_TRACE(name_of(law));
     SoilRecipe r = stone();
     r.contact_law = law;
     r.density_N_h2_mm4 = 1e-6;  // light: it has come to rest when the force is read
-    r.grains_file = test::write(folder_ / "one.csv", "x_mm,y_mm,z_mm,radius_mm\n-0.65,0,0,0.15\n");
+    r.grains = {{{-0.65, 0, 0}, 0.15}};
     YadeSoil s = soil(r);
     double x = -0.65 - grain_radius_mm - marker_radius_mm - 0.001;
     s.advance(move({x, 0, 0}, {x, 0, 0}));
@@ -134,7 +154,7 @@ TEST_F(Yade, AGrainPressedOnTheRootFollowsTheLaw) {
       const double d = grain_radius_mm + marker_radius_mm - (s.snapshot().position_mm.at(0)[0] - x);
       const double R = grain_radius_mm * marker_radius_mm / (grain_radius_mm + marker_radius_mm);
       const double hertz = 4.0 / 3.0 * r.E_MPa / (2 * (1 - r.poisson * r.poisson)) * std::sqrt(R) * std::pow(d, 1.5);
-      const double expected = (law == "linear" ? 2 * r.E_MPa * R * d : hertz) / r.layer_mm();
+      const double expected = (law == ContactLaw::linear ? 2 * r.E_MPa * R * d : hertz) / r.layer_mm();
       EXPECT_GT(d, 0.2 * step);
       EXPECT_NEAR(force_N_mm, -expected, 0.01 * expected) << "approach " << d;
     }
@@ -303,7 +323,7 @@ TEST_F(Yade, APackedSampleIsAtRestUnderItsPressureAndKept) {
 /// Making room for the root takes nearly all of it away; walls keep it until the root is in, and only then stand still.
 TEST_F(Yade, BetweenRigidWallsGrainsBeginUnderTheConfiningPressure) {
   SoilRecipe r = test::packed_grains();
-  r.walls = "rigid";
+  r.walls = SoilWalls::rigid;
   YadeSoil s = soil(r);
   const SurfaceForces f = s.advance(push(0.3, 0.0));
   const double whole_N = r.confining_pressure_MPa * (r.box_to_mm[0] - r.box_from_mm[0]);
@@ -313,7 +333,8 @@ TEST_F(Yade, BetweenRigidWallsGrainsBeginUnderTheConfiningPressure) {
 
 TEST_F(Yade, AMovableStoneKeepsItsSizeAndPlaceInPacking) {
   SoilRecipe r = test::packed_grains();
-  r.obstacles = {{.name = "stone", .shape = "stone", .position_mm = {3, 0, 0}, .radius_mm = 0.5, .movable = true}};
+  r.obstacles = {
+      {.name = "stone", .shape = SoilShape::stone, .position_mm = {3, 0, 0}, .radius_mm = 0.5, .movable = true}};
   YadeSoil s = soil(r);
   s.advance(push(0.3, 0.0));
   const SoilSnapshot snapshot = s.snapshot();
@@ -337,7 +358,7 @@ TEST_F(Yade, TheDensityMakesTheSoilQuasiStatic) {
 /// A row of markers, closer than half their radius, slides along a plate under constant approach.
 TEST_F(Yade, MarkersSlideSmoothlyOnAPlate) {
   SoilRecipe r = stone();
-  r.obstacles = {{.name = "plate", .shape = "plate", .position_mm = {0, -0.5, 0}, .length_mm = 3.0}};
+  r.obstacles = {{.name = "plate", .shape = SoilShape::plate, .position_mm = {0, -0.5, 0}, .length_mm = 3.0}};
   YadeSoil s = soil(r);
   const int markers = 40;
   const double y = -0.5 + 0.05 + marker_radius_mm - 0.0005;
@@ -371,7 +392,7 @@ TEST_F(Yade, BallsInThreeDimensions) {
   r.dimension = 3;
   r.box_from_mm = {0, -0.8, -0.8};
   r.box_to_mm = {1.8, 0.8, 0.8};
-  r.contact_law = "hertz_mindlin";
+  r.contact_law = ContactLaw::hertz_mindlin;
   YadeSoil s = soil(r);
   SurfaceForces f;
   for (int k = 0; k < 3; ++k) f = s.advance(push(0.3 + 0.001 * k, 0.001));

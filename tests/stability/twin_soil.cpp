@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// `rootsoil run` and `version` with a soil of this process in the place of YADE, for hard cases: a stiff, rough plate 0.01 mm
-// beyond the tip, which can let go.
+// `rootsoil run` and `version` with a soil of this process in the place of YADE, for hard cases: a stiff, rough plate
+// 0.01 mm beyond the tip, which can let go.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <limits>
 #include <memory>
 
+#include "root_sph/app/commands.hpp"
 #include "root_sph/core/errors.hpp"
-#include "root_sph/scene/commands.hpp"
-#include "root_sph/scene/read_scene.hpp"
+#include "root_sph/core/version.hpp"
+#include "root_sph/effects/soil_contact/soil_section.hpp"
+#include "root_sph/effects/table.hpp"
 #include "soil_coupling/twins/half_space.hpp"
 
 namespace rootsoil {
@@ -55,20 +57,22 @@ int command_line(int argc, char** argv) {
   run->add_option("--gone-at", gone_at_h, "Hours, when the plate lets go");
   CLI11_PARSE(app, argc, argv);
   if (!run->parsed()) {
-    std::cout << "rootsoil " << ROOTSOIL_VERSION << '\n';
+    std::cout << "rootsoil " << program_version << '\n';
     return 0;
   }
-  return run_scene(read_scene(scene_file), options, [gone_at_h](const Scene& scene, const SoilStart&) {
+  Scene scene = read_scene(scene_file);
+  SoilContactSection contact;
+  contact.interval_h = *scene.numerics.step_h;  // a window an interval
+  contact.ramp_h = 0.0;                         // the root starts out of contact
+  contact.stiffness_predictor = true;
+  scene.all<SoilContactSection>().push_back(contact);
+  return run_scene(scene, options, [gone_at_h](const Scene& read, const SoilStart&) {
     twins::HalfSpaceParameters plate;
-    plate.point_mm = {scene.root.length_mm + gap_mm, 0.0, 0.0};
+    plate.point_mm = {read.root.length_mm + gap_mm, 0.0, 0.0};
     plate.outward = {-1.0, 0.0, 0.0};
     plate.stiffness_N_mm = stiffness_N_mm;
     plate.friction = friction;
-    Soil soil;
-    soil.port = std::make_unique<ReleasingPlate>(plate, gone_at_h);
-    soil.contact.stiffness_predictor = true;
-    soil.contact.ramp_h = 0.0;  // the root starts out of contact
-    return soil;
+    return std::make_unique<ReleasingPlate>(plate, gone_at_h);
   });
 }
 

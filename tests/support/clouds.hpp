@@ -46,9 +46,15 @@ class Random {
 
   template <int Dim>
   Mat<Dim> rotation() {
-    // Gram-Schmidt on a random matrix; columns swapped in sign until it is right-handed
-    const Mat<Dim> q = Eigen::HouseholderQR<Mat<Dim>>(matrix<Mat<Dim>>()).householderQ();
-    Mat<Dim> r = q;
+    // Gram-Schmidt on a random matrix, twice, because the first leaves an angle where two columns are nearly parallel
+    Mat<Dim> r = matrix<Mat<Dim>>();
+    for ([[maybe_unused]] const int pass : {1, 2}) {
+      for (int a = 0; a < Dim; ++a) {
+        for (int b = 0; b < a; ++b) r.col(a) -= r.col(b).dot(r.col(a)) * r.col(b);
+        r.col(a).normalize();
+      }
+    }
+    // right-handed
     if (r.determinant() < 0.0) r.col(0) = -r.col(0);
     return r;
   }

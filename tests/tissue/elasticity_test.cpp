@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "root_sph/tissue/closed_form.hpp"
 #include "tests/support/clouds.hpp"
 
 namespace rootsoil {
@@ -18,6 +18,18 @@ const std::vector<ElasticConstants> tissues{{1020.0, 1020.0, 0.06, 0.3, 481.0},
                                             {1020.0, 15000.0, 0.06, 0.3, 481.0},
                                             {1020.0, 51000.0, 0.06, 0.2, 85000.0},
                                             {200.0, 150.0, 0.35, 0.4, 60.0}};
+
+/// Of Gaussian elimination: all pivots of a symmetric matrix are positive where it is positive definite, and only
+/// there.
+template <class Matrix>
+double smallest_pivot(Matrix m) {
+  double smallest = m(0, 0);
+  for (Eigen::Index k = 0; k < m.rows(); ++k) {
+    smallest = std::min(smallest, m(k, k));
+    for (Eigen::Index row = k + 1; row < m.rows(); ++row) m.row(row) -= m(row, k) / m(k, k) * m.row(k);
+  }
+  return smallest;
+}
 
 template <class Dimension>
 class Elasticity : public testing::Test {};
@@ -46,12 +58,8 @@ TEST(Compliance3D, HasTheEntriesOfEquation4) {
 TYPED_TEST(Elasticity, StiffnessTimesComplianceIsOne) {
   constexpr int dim = TypeParam::value;
   for (const ElasticConstants& constants : tissues) {
-    const VoigtMat<dim> s = compliance<dim>(constants);
-    const Stiffness<dim> k = stiffness<dim>(constants);
-    for (int c = 0; c < voigt_size<dim>; ++c) {
-      const Voigt<dim> unit = Voigt<dim>::Unit(c);
-      EXPECT_LT((elastic_stress<dim>(k, Voigt<dim>(s * unit)) - unit).norm(), 1e-13);
-    }
+    const VoigtMat<dim> product = elastic_tangent<dim>(stiffness<dim>(constants)) * compliance<dim>(constants);
+    EXPECT_LT((product - VoigtMat<dim>::Identity()).norm(), 1e-13);
   }
 }
 
@@ -98,21 +106,18 @@ TYPED_TEST(Elasticity, IsSymmetricAndPositive) {
   constexpr int dim = TypeParam::value;
   for (const ElasticConstants& constants : tissues) {
     const Stiffness<dim> k = stiffness<dim>(constants);
-    VoigtMat<dim> c;
-    for (int column = 0; column < voigt_size<dim>; ++column) {
-      c.col(column) = elastic_stress<dim>(k, Voigt<dim>(Voigt<dim>::Unit(column)));
-    }
+    const VoigtMat<dim> c = elastic_tangent<dim>(k);
     EXPECT_EQ(c, VoigtMat<dim>(c.transpose()));
-    EXPECT_GT(Eigen::SelfAdjointEigenSolver<VoigtMat<dim>>(c).eigenvalues()[0], 0.0);
+    EXPECT_GT(smallest_pivot(c), 0.0);
   }
 }
 
-TEST(ClosedForm, HasTheStrainsOfEquation8) {
+TEST(PressureStrain, IsThatOfEquation8) {
   const ElasticConstants constants{1020.0, 5000.0, 0.06, 0.3, 481.0};
-  const AxialRadial plane = equilibrium_strain<2>(stiffness<2>(constants), 0.7);
+  const AxialRadial plane = pressure_strain<2>(stiffness<2>(constants), 0.7);
   EXPECT_NEAR(plane.axial, 0.7 * 0.94 / 1020.0, 1e-17);
   EXPECT_NEAR(plane.radial, 0.7 * (1.0 / 5000.0 - 0.06 / 1020.0), 1e-17);
-  const AxialRadial solid = equilibrium_strain<3>(stiffness<3>(constants), 0.7);
+  const AxialRadial solid = pressure_strain<3>(stiffness<3>(constants), 0.7);
   EXPECT_NEAR(solid.axial, 0.7 * 0.88 / 1020.0, 1e-17);
   EXPECT_NEAR(solid.radial, 0.7 * (0.7 / 5000.0 - 0.06 / 1020.0), 1e-17);
 }

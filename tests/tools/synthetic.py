@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Run folders made without the solver: cells that move as the closed form says. Lengths in mm, times in h."""
+"""Run folders made without the solver: cells that move as a closed form of this file says.
+
+Lengths in mm, times in h.
+"""
 
 from __future__ import annotations
 
 import json
-import tomllib
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from rootsoil_tools.theory import model_of
+from rootsoil_tools.theory import ClosedForm, cumulative_integral
 
 SCENE = """
 [scene]
@@ -46,12 +48,45 @@ mature_width_mm = 0.4
 """
 
 
-def write_frame(file: h5py.File, number: int, time_h: float, columns: dict[str, tuple[np.ndarray, str]]) -> None:
+def closed_form(dimension: int, length: float, pressure: float, grows: bool = True) -> ClosedForm:
+    """Strains as in Eq. 8 with E_R = 10 E_A away from the tip; a bell of growth, and some of it widens the tip."""
+    s = np.linspace(0.0, length, 4001)
+    one = np.ones_like(s)
+    radial_modulus = 1020.0 * (1.0 + 9.0 * s / (s + 0.1))
+    transverse = 1.0 if dimension == 2 else 0.7
+    columns = {
+        "distance_to_tip": s,
+        "pressure_differential": pressure * one,
+        "arrest_stress": pressure * (1.0 - 0.06 * (dimension - 1)) * one,
+        "radial_modulus": radial_modulus,
+        "axial_strain": pressure * (1.0 - 0.06 * (dimension - 1)) / 1020.0 * one,
+        "radial_strain": pressure * (transverse / radial_modulus - 0.06 / 1020.0),
+    }
+    if grows:
+        rate = 0.4 * pressure * np.exp(-(((s - 0.32) / 0.3) ** 2))
+        radial = 0.1 * rate * np.exp(-s / 0.3)
+        speed = cumulative_integral(s, rate)
+        slope = np.where(s > 0.2, radial / np.maximum(speed, 1e-9), 0.0)
+        columns |= {
+            "softening": 1e6 * rate,
+            "axial_strain_rate": rate,
+            "radial_strain_rate": radial,
+            "speed_from_tip": speed,
+            "relative_radius": np.exp(cumulative_integral(s, slope)),
+        }
+    return ClosedForm(columns)
+
+
+def write_frame(
+    file: h5py.File, number: int, time_h: float, columns: dict[str, tuple[np.ndarray, str]], exact: ClosedForm
+) -> None:
     """One frame in the layout of run.h5."""
     group = file.create_group(f"frames/{number:06d}")
     group.attrs.update(time_h=time_h, step=number, cells=len(columns["position"][0]))
     for name, (values, unit) in columns.items():
         group.create_dataset(name, data=values).attrs["unit"] = unit
+    for name, values in exact.columns.items():
+        group.create_dataset(f"closed_form/{name}", data=values)
 
 
 def columns_of(s, position, along, across, rate, volume, generation, label) -> dict[str, tuple[np.ndarray, str]]:
@@ -109,7 +144,7 @@ def make_growing_run(
         more=GROWTH + more,
     )
     (folder / "scene.toml").write_text(text)
-    model = model_of(tomllib.loads(text))
+    model = closed_form(dimension, length + 0.5 * duration, pressure)
     random = np.random.default_rng(1)
     centre = lattice(dimension, length, radius, cell)
     s, y = length - centre[:, 0], centre[:, 1:].copy()
@@ -128,10 +163,10 @@ def make_growing_run(
                 position = np.column_stack([s.max() + cell / 2.0 - s, y])
                 rate = model.axial_rate(s) * random.normal(1.0, 0.03, len(s))
                 columns = columns_of(s, position, along, across, rate, volume, generation, label)
-                write_frame(file, next_frame, time, columns)
-                rows.append((time, len(s), s.max() + cell / 2.0))
+                write_frame(file, next_frame, time, columns, model)
+                rows.append((time, len(s), s.max() + cell / 2.0, model.tip_speed(s.max())))
                 next_frame += 1
-            a, r = model.axial_rate(s), model.radial_rate(s)
+            a, r = model.axial_rate(s), model.at("radial_strain_rate", s)
             s = s + step * np.interp(s, grid, speed)
             s -= (s - along / 2.0).min()
             y *= np.exp(step * r)[:, None]
@@ -148,7 +183,7 @@ def make_growing_run(
             )
             label = np.arange(len(s))
             time += step
-    lines = ["time_h,cells,length_mm"] + [f"{t},{n},{x}" for t, n, x in rows]
+    lines = ["time_h,cells,length_mm,tip_speed_mm_h"] + [",".join(map(str, row)) for row in rows]
     (folder / "history.csv").write_text("\n".join(lines) + "\n")
     (folder / "summary.json").write_text(json.dumps({"status": "done", "time_h": duration}))
     return folder
@@ -170,16 +205,16 @@ def make_strained_run(
         more="",
     )
     (folder / "scene.toml").write_text(text)
-    model = model_of(tomllib.loads(text))
+    model = closed_form(dimension, length, 1.0, grows=False)
     before = lattice(dimension, length, radius, cell)
     s = length - before[:, 0]
     after = before.copy()
-    after[:, 0] *= 1.0 + model.axial_strain()
-    after[:, 1:] *= 1.0 + model.radial_strain(s)[:, None]
+    after[:, 0] *= np.exp(model.at("axial_strain", 0.0))
+    after[:, 1:] *= np.exp(model.at("radial_strain", s))[:, None]
     size = np.full(len(s), cell)
     with h5py.File(folder / "run.h5", "w") as file:
         for number, position in enumerate((before, after)):
             zero = np.zeros(len(s), dtype=int)
             columns = columns_of(s, position, size, size, 0.0 * s, size**dimension, zero, np.arange(len(s)))
-            write_frame(file, number, 8.0 * number, columns)
+            write_frame(file, number, 8.0 * number, columns, model)
     return folder

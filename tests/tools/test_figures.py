@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import csv
+import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -11,11 +13,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from matplotlib import pyplot as plt
+from overview import draw_contact, percent
 from synthetic import make_growing_run, make_strained_run
 
 from rootsoil_tools import measure
 from rootsoil_tools.runs import Frame, Run, RunError
-from rootsoil_tools.theory import model_of
 
 PNG = b"\x89PNG\r\n\x1a\n"
 OBSTACLES = """
@@ -82,11 +85,19 @@ def test_overview_in_3d_without_shapes_and_by_external_links(project: Path, tmp_
 
 
 def test_overview_of_a_single_frame(project: Path, tmp_path: Path):
-    run = make_growing_run(tmp_path / "run", frames=2, duration=1.0)
+    """Of a run that has just begun: the speed is that of the start, and nothing is said that is not known."""
+    run = make_growing_run(tmp_path / "run", name="arabidopsis", frames=2, duration=1.0)
     with h5py.File(run / "run.h5", "r+") as file:
         del file["frames/000001"]
+    header, first, _ = (run / "history.csv").read_text().splitlines()
+    (run / "history.csv").write_text(f"{header}\n{first}\n")
     done = overview(project, run)
     assert done.returncode == 0, done.stderr
+    said = re.search(r"tip speed (\S+) mm/h \(closed form (\S+) mm/h\)", done.stdout)
+    assert said and float(said[1]) == pytest.approx(float(said[2]), rel=0.01)
+    assert "nan" not in done.stdout and done.stderr == ""
+    (run / "history.csv").unlink()
+    assert "nan" not in overview(project, run).stdout
 
 
 def test_overview_says_what_is_wrong(project: Path, tmp_path: Path):
@@ -125,17 +136,18 @@ def test_radius_of_a_lattice_is_half_its_width(tmp_path: Path):
 def test_strain_of_cells_moved_as_equation_8_says(tmp_path: Path):
     for dimension in (2, 3):
         run = Run(make_strained_run(tmp_path / f"{dimension}", dimension=dimension))
-        model = model_of(run.scene)
+        model = run.frame(-1).closed_form
         edges = measure.edges_of(1.5, 0.1)
-        axial, radial = measure.strain_profiles(run.frame(0), run.frame(1), dimension, edges)
+        strains = measure.strain_profiles(run.frame(0), run.frame(1), dimension, edges)
+        axial, radial = (np.log1p(e) for e in strains)
         middle = (edges[1:] + edges[:-1]) / 2.0
-        assert axial == pytest.approx(np.full(15, model.axial_strain()), rel=1e-6)
-        assert radial[4:] == pytest.approx(model.radial_strain(middle[4:]), abs=3e-6)
+        assert axial == pytest.approx(model.at("axial_strain", middle), rel=1e-6)
+        assert radial[4:] == pytest.approx(model.at("radial_strain", middle[4:]), abs=3e-6)
 
 
 def test_growth_profiles_find_the_closed_form(grown: Path):
     run = Run(grown)
-    model = model_of(run.scene)
+    model = run.frame(-1).closed_form
     rate = measure.growth_profiles(run, measure.edges_of(1.0, 0.05))["axial_strain_rate"]
     assert rate.mean[2:] == pytest.approx(model.axial_rate(rate.s_mm[2:]), abs=0.02)
     assert measure.tip_speed(run) == pytest.approx(model.tip_speed(3.0), rel=0.02)
@@ -147,7 +159,7 @@ def test_drift_of_the_mature_radius(grown: Path, tmp_path: Path):
     with h5py.File(faster / "run.h5", "r+") as file:
         for group in file["frames"].values():
             group["volume"][...] *= np.exp(0.01 * group.attrs["time_h"])
-    model = model_of(Run(grown).scene)
+    model = Run(grown).frame(-1).closed_form
     radius, drift = (f(model, Run(grown)) for f in (measure.mature_radius, measure.radius_drift))
     assert np.isfinite(radius) and np.isfinite(drift)
     assert measure.radius_drift(model, Run(faster)) == pytest.approx(drift + 0.01, abs=1e-9)
@@ -157,7 +169,7 @@ def test_drift_of_the_mature_radius(grown: Path, tmp_path: Path):
 def test_contact_measures(grown: Path, tmp_path: Path):
     for dimension, section in ((2, 0.6), (3, 112 * 0.05**2)):
         run = Run(make_strained_run(tmp_path / f"{dimension}", dimension=dimension))
-        model = model_of(run.scene)
+        model = run.frame(-1).closed_form
         expected = model.p * (1.0 - (dimension - 1) * 0.06) * section
         assert measure.arresting_force(model, run) == pytest.approx(expected, rel=0.02)
     frame = Run(grown).frame(0)
@@ -177,6 +189,68 @@ def test_overview_of_contact_draws_force_over_time(project: Path, grown: Path, t
     assert "contact from 4 h" in done.stdout and "largest force 0.002 N/mm" in done.stdout
     assert "deflection at the end 0.12 mm" in done.stdout
     assert (touching / "overview.png").read_bytes().startswith(PNG)
+
+
+def texts(project: Path, run: Path) -> str:
+    """All words in the picture, and what the tool says, with spaces in between."""
+    done = overview(project, run, "--out", str(run / "overview.svg"))
+    assert done.returncode == 0, done.stderr
+    svg = (run / "overview.svg").read_text(encoding="utf-8")
+    return " ".join(re.findall(r">([^<>]+)</text>", svg)) + " " + done.stdout
+
+
+def test_the_legend_names_what_is_drawn(project: Path, grown: Path, tmp_path: Path):
+    """Steady growth (of cell lengths this run knows no closed form), the band and the data: only where there is any."""
+    full = texts(project, shutil.copytree(grown, tmp_path / "grown"))
+    for part in ("simulation, mean of 8–12 h", "16–84 %", "closed form (D: steady growth)", "Beemster"):
+        assert part in full, full
+    # one column of cells, seen once, has neither a steady state nor a band
+    young = make_growing_run(tmp_path / "young", name="young", duration=0.02, radius=0.02, cell=0.04, frames=2)
+    with h5py.File(young / "run.h5", "r+") as file:
+        del file["frames/000001"]
+    words = texts(project, young)
+    assert "simulation, 0 h" in words and "closed form" in words
+    assert "steady growth" not in words and "16–84 %" not in words and "Beemster" not in words
+    strained = texts(project, make_strained_run(tmp_path / "strained", cell=0.06))
+    assert "simulation, 8 h Eq. 8" in strained and "closed form" not in strained
+
+
+def test_strain_that_has_not_settled_is_not_judged(project: Path, tmp_path: Path):
+    """A run that was paused early says so beside its distance from Eq. 8."""
+    run = make_strained_run(tmp_path / "run", cell=0.06)
+    assert "settled" not in texts(project, run)
+    scene = (run / "scene.toml").read_text()
+    (run / "scene.toml").write_text(scene.replace("duration_h = 8.0", "duration_h = 80.0"))
+    words = texts(project, run)
+    assert words.count("not settled at 8 of 80 h: off ") == 2 and words.count("it has not settled: 8 of 80 h") == 2
+
+
+@pytest.mark.parametrize("force, deflection", [(0.002, 0.12), (120.0, 0.12), (0.002, 5e-6)])
+def test_contact_panels_show_all_of_it_and_no_more(grown: Path, tmp_path: Path, force: float, deflection: float):
+    """However large the force is, it lies below the panel's top; a deflection that is none does not look like one."""
+    touching = shutil.copytree(grown, tmp_path / "run")
+    (touching / "history.csv").write_text(
+        "time_h,length_mm,tip_y_mm,tip_z_mm,contact_force_N\n"
+        + "".join(f"{t},{1.5 + 0.2 * t},{deflection * t / 12},0,{force * (t > 3)}\n" for t in range(13))
+    )
+    run = Run(touching)
+    model = run.frame(-1).closed_form
+    _, panels = plt.subplots(1, 3)
+    draw_contact(run, model, panels)
+    assert panels[0].get_ylim()[1] >= 1.5 * max(force, measure.arresting_force(model, run))
+    top = panels[1].get_ylim()[1]
+    cell = float(np.median(run.frame(0)["cell_axes"][:, 0]))
+    assert top >= max(deflection, 0.1 * cell) and top < 1.2 * max(deflection, 0.1 * cell)
+    plt.close()
+
+
+def test_one_number_has_one_form(project: Path, grown: Path, tmp_path: Path):
+    """What is outside its limit stands in the picture with the digits that run.log gives it."""
+    run = shutil.copytree(grown, tmp_path / "run")
+    measures = {"inertia_error": {"limit": 0.05, "worst": 231.4, "at_h": 0.1, "rows": 4, "rows_beyond": 2}}
+    (run / "summary.json").write_text(json.dumps({"stated_accuracy": measures}))
+    assert texts(project, run).count("inertia error 231 at 0.1 h (limit 0.05)") == 2
+    assert [percent(x) for x in (0.0123456, 95.401, 1227.6, 23141.0)] == ["0.0123 %", "95.4 %", "1228 %", "23141 %"]
 
 
 def test_bins_and_determination():
@@ -225,8 +299,10 @@ def test_impedance_series(project: Path, tmp_path: Path):
         rows = list(csv.DictReader(file))
     assert {row["p_MPa"] for row in rows} == {"1", "0.5"}
     row = next(row for row in rows if row["p_MPa"] == "0.5")
-    model = model_of(Run(out / "p_0.5").scene)
-    assert float(row["softening_ug_mm3_h"]) == pytest.approx(model.softening(float(row["distance_mm"])), rel=1e-5)
+    model = Run(out / "p_0.5").frame(-1).closed_form
+    assert float(row["softening_ug_mm3_h"]) == pytest.approx(
+        float(model.at("softening", float(row["distance_mm"]))), rel=1e-5
+    )
     assert "relative" in done.stdout and "+0.0%" in done.stdout
 
     # finished runs are taken as they are; a changed scene is not mistaken for them

@@ -7,13 +7,18 @@ import tomllib
 
 from rootsoil_tools import scenes
 
-BASE = {"root": {"length_mm": 1.0}, "division": {"l0_mm": 0.01}, "obstacle": [{"shape": "plane", "position_mm": [1.0, 0.0]}]}
+BASE = {
+    "root": {"length_mm": 1.0},
+    "division": {"l0_mm": 0.01},
+    "obstacle": [{"shape": "plane", "position_mm": [1.0, 0.0]}],
+}
 
 
 def test_changes_leave_the_base_as_it_is():
     own = {"x_e_mm": 0.5}
     changed = scenes.with_changes(
-        BASE, {"root.length_mm": 2.0, "division": None, "tissue.anisotropy": own, "tissue.anisotropy.c_e": 0.2, "sleep": {}}
+        BASE,
+        {"root.length_mm": 2.0, "division": None, "tissue.anisotropy": own, "tissue.anisotropy.c_e": 0.2, "sleep": {}},
     )
     assert changed == {
         "root": {"length_mm": 2.0},

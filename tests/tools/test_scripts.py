@@ -25,6 +25,16 @@ def test_scripts_are_sound(project: Path):
         assert "set -euo pipefail" in script.read_text()
 
 
+@pytest.mark.parametrize("option", ["-h", "--help"])
+def test_help_explains_and_does_nothing_else(project: Path, option: str):
+    for script in sorted((project / "tools").glob("*.sh")):
+        shown = subprocess.run(
+            [script, option], env={"PATH": "/usr/bin:/bin"}, capture_output=True, text=True, timeout=10
+        )
+        assert shown.returncode == 0 and shown.stderr == "", script
+        assert f"tools/{script.name} [" in shown.stdout and "cmake" not in shown.stdout, script
+
+
 @pytest.mark.skipif(shutil.which("shellcheck") is None, reason="shellcheck is not installed")
 def test_shellcheck(project: Path):
     done = subprocess.run(["shellcheck", *scripts(project)], capture_output=True, text=True)
@@ -47,7 +57,7 @@ def machine() -> Iterator[tuple[Path, dict[str, str]]]:
     bin_folder.chmod(0o755)
     log = bin_folder / "log"
     here = Path(__file__).resolve().parents[2]
-    listed = re.search(r'packages="\n(.*?)"', (here / "tools" / "setup.sh").read_text(), re.S)
+    listed = re.search(r'^packages="\n(.*?)"', (here / "tools" / "setup.sh").read_text(), re.M | re.S)
     present = [line.split()[0] for line in listed[1].splitlines() if not line.startswith(("libcli11", "g++"))]
     lines = "\\n".join(["ii " + name for name in present] + ["rc g++"])
     fake(bin_folder, "dpkg-query", f"printf '{lines}\\n'\n")
@@ -84,30 +94,6 @@ def test_setup_without_rights_prints_the_line_to_run(project: Path, machine):
     assert not log.exists()
 
 
-def test_setup_lists_what_the_build_asks_for(project: Path):
-    """Every find_package of the build has its Debian package in the one list."""
-    listed = (project / "tools" / "setup.sh").read_text()
-    package_of = {
-        "Eigen3": "libeigen3-dev",
-        "HDF5": "libhdf5-dev",
-        "fmt": "libfmt-dev",
-        "spdlog": "libspdlog-dev",
-        "tomlplusplus": "libtomlplusplus-dev",
-        "CLI11": "libcli11-dev",
-        "nlohmann_json": "nlohmann-json3-dev",
-        "GTest": "libgtest-dev",
-        "benchmark": "libbenchmark-dev",
-        "OpenMP": "g++",
-        "Threads": "g++",
-    }
-    files = [project / "CMakeLists.txt", *(project / "cmake").glob("*.cmake"), *project.glob("*/**/CMakeLists.txt")]
-    for file in files:
-        if "build" in file.relative_to(project).parts:
-            continue
-        for name in re.findall(r"find_package\((\w+)", file.read_text()):
-            assert package_of[name] + " " in listed, f"{file}: {name}"
-
-
 @pytest.fixture
 def copy(project: Path, tmp_path: Path) -> Path:
     """The scripts in a folder of their own, with a build that is up to date and programs that only report."""
@@ -115,7 +101,8 @@ def copy(project: Path, tmp_path: Path) -> Path:
         (tmp_path / folder).mkdir(parents=True)
     for name in ("run.sh", "test.sh"):
         shutil.copy(project / "tools" / name, tmp_path / "tools" / name)
-    fake(tmp_path / "tools", "build.sh", "exit ${BUILD_STATUS:-0}\n")
+    fake(tmp_path / "tools", "build.sh", f'echo "$*" >>{tmp_path}/build.log\nexit ${{BUILD_STATUS:-0}}\n')
+    fake(tmp_path / "tools", "lint.sh", "")
     fake(tmp_path / "tools", "setup.sh", f'echo "$*" >>{tmp_path}/setup.log\n')
     fake(tmp_path / "build" / "release", "rootsoil", 'echo "$@"\nexit 3\n')
     (tmp_path / "scenarios" / "case2_arabidopsis.toml").touch()
@@ -146,14 +133,75 @@ def test_only_a_scene_with_soil_asks_for_yade(copy: Path):
     assert (copy / "setup.log").read_text() == "--soil\n"
 
 
-def test_setup_installs_yade_only_when_asked(project: Path, machine):
+@pytest.mark.parametrize("options", [[], ["--soil"], ["--test"], ["--dev"], ["--soil", "--test"], ["--dev", "--soil"]])
+def test_setup_installs_only_what_is_asked_for(project: Path, machine, options: list[str]):
     log, environment = machine
-    for arguments in ([], ["--soil"]):
-        log.unlink(missing_ok=True)
-        done = subprocess.run([project / "tools" / "setup.sh", *arguments], env=environment, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        assert ("yade" in log.read_text().split()) == bool(arguments)
-    assert subprocess.run([project / "tools" / "setup.sh", "--sol"], capture_output=True).returncode == 2
+    done = subprocess.run([project / "tools" / "setup.sh", *options], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    installed = log.read_text().split()
+    for option, packages in {
+        "--soil": {"yade"},
+        "--test": {"libgtest-dev", "libgmock-dev", "libbenchmark-dev", "python3-pytest"},
+        "--dev": {"clang-format", "clang-tidy", "cppcheck", "black", "flake8", "mypy", "codespell", "pre-commit"},
+    }.items():
+        assert packages & set(installed) == (packages if option in options else set())
+
+
+def test_setup_refuses_unknown_arguments(project: Path):
+    for arguments in (["--sol"], ["--soil", "--tests"]):
+        done = subprocess.run([project / "tools" / "setup.sh", *arguments], capture_output=True, text=True)
+        assert done.returncode == 2 and done.stdout == ""
+        assert f"'{arguments[-1]}' (allowed: --test, --soil, --dev)" in done.stderr
+
+
+def test_a_run_builds_the_program_only(copy: Path):
+    subprocess.run([copy / "tools" / "run.sh", "growth_3d"], capture_output=True)
+    assert (copy / "build.log").read_text() == "rootsoil\n"
+
+
+@pytest.mark.parametrize("arguments, built", [([], ""), (["--quick", "--werror"], "--werror")])
+def test_test_builds_everything(copy: Path, arguments: list[str], built: str):
+    subprocess.run(
+        [copy / "tools" / "test.sh", *arguments], env={**os.environ, "BUILD_STATUS": "7"}, capture_output=True
+    )
+    assert (copy / "setup.log").read_text() == "--test --soil --dev\n"
+    assert (copy / "build.log").read_text() == built + "\n"
+
+
+@pytest.fixture
+def builder(project: Path, tmp_path: Path) -> tuple[Path, dict[str, str]]:
+    """tools/build.sh among commands that write what they were called with to `log`; ninja always has work."""
+    (tmp_path / "tools").mkdir()
+    shutil.copy(project / "tools" / "build.sh", tmp_path / "tools" / "build.sh")
+    log = tmp_path / "log"
+    fake(tmp_path / "tools", "setup.sh", f'echo "setup $*" >>{log}\n')
+    cache = tmp_path / "build" / "release" / "CMakeCache.txt"
+    fake(
+        tmp_path,
+        "cmake",
+        f'echo "cmake $*" >>{log}\nmkdir -p {cache.parent}\ntouch {cache.parent}/build.ninja {cache}\n',
+    )
+    fake(tmp_path, "ninja", f'[[ " $* " == *" -n "* ]] || echo "ninja ${{@:5}}" >>{log}\n')
+    return tmp_path, {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
+
+
+def test_build_builds_its_targets_and_installs_what_they_need(builder):
+    folder, environment = builder
+
+    def build(*arguments: str) -> list[str]:
+        (folder / "log").unlink(missing_ok=True)
+        subprocess.run([folder / "tools" / "build.sh", *arguments], env=environment, check=True, capture_output=True)
+        return [line.strip() for line in (folder / "log").read_text().splitlines()]
+
+    configured = "cmake --preset release"
+    assert build("rootsoil") == ["setup", configured, "ninja rootsoil"]
+    assert build() == ["setup --test", "ninja"]
+    assert build("--werror") == ["setup --test", configured + " -DROOTSOIL_WERROR=ON", "ninja"]
+    # configured before GoogleTest was there: only the tests ask again
+    cache = folder / "build" / "release" / "CMakeCache.txt"
+    cache.write_text("GTest_DIR:PATH=GTest_DIR-NOTFOUND\n")
+    assert build("rootsoil") == ["setup", "ninja rootsoil"]
+    assert build() == ["setup --test", configured, "ninja"]
 
 
 def test_failed_build_ends_run_and_test(copy: Path):

@@ -17,7 +17,10 @@ THE_PAPERS = Choice(PAPER_NAME, PAPER)
 
 # either or: a curve over the cells across
 SWITCHES = [
-    *(Choice(f"isotropic kernel, H_bar {h:g}", {"numerics.kernel": "isotropic", "numerics.H_bar": h}) for h in (2.0, 4.5, 8.0)),
+    *(
+        Choice(f"isotropic kernel, H_bar {h:g}", {"numerics.kernel": "isotropic", "numerics.H_bar": h})
+        for h in (2.0, 4.5, 8.0)
+    ),
     Choice("plain gradient", {"numerics.gradient": "plain"}),
     Choice("linear gradient", {"numerics.gradient": "linear"}),
     Choice("quadratic gradient", {"numerics.gradient": "quadratic"}),
@@ -123,7 +126,7 @@ def cells_of_default(problem: Problem) -> Sequence[int]:
 
 
 def cells_of_switch(problem: Problem, choice: Choice) -> Sequence[int]:
-    """Cells across. Wide kernels stop at 8, where a run takes 4 to 6 times the default's; at 12 it would be 8 to 14 times."""
+    """Cells across. Wide kernels stop at 8, where a run takes 4 to 6 times the default's; at 12 it would be 8 to 14."""
     all_cells = (6, 8, 10) if problem.name == "path" else (4, 6, 8, 12)
     return [n for n in all_cells if n <= 8 or choice.changes.get("numerics.H_bar", 0.0) <= 2.0]
 

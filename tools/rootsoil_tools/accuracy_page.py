@@ -74,7 +74,9 @@ def spread(values: np.ndarray, unit: str = "", sign: str = "") -> str:
 # ---- rows -----------------------------------------------------------------------------------------
 
 
-def find(rows: Sequence[Row], choice: str, problem: str, measure: str, across: int, level: float = math.nan) -> Row | None:
+def find(
+    rows: Sequence[Row], choice: str, problem: str, measure: str, across: int, level: float = math.nan
+) -> Row | None:
     """The row of a run."""
     for r in rows:
         same_level = r.level == level or (math.isnan(level) and math.isnan(r.level))
@@ -122,7 +124,9 @@ def compared(own: Row | None, base: Row | None) -> tuple[str, float]:
     return short(own.error / base.error), own.cpu_s / base.cpu_s
 
 
-def table_of_choices(rows: Sequence[Row], problems: Sequence[Problem], choices: Sequence[NamedLevel], across: int) -> str:
+def table_of_choices(
+    rows: Sequence[Row], problems: Sequence[Problem], choices: Sequence[NamedLevel], across: int
+) -> str:
     """Choices (name, level) at some cells across: time over the default's (median), error over the default's."""
     shown = [p for p in problems if p.name in MAIN and find(rows, DEFAULT_NAME, p.name, MAIN[p.name][0], across)]
     base = {p.name: find(rows, DEFAULT_NAME, p.name, MAIN[p.name][0], across) for p in shown}
@@ -166,7 +170,12 @@ def table_of_targets(rows: Sequence[Row], problems: Sequence[Problem]) -> str:
 
 def table_of_presets(rows: Sequence[Row]) -> str:
     """What each preset costs and how exact it is."""
-    columns = (("division", "axial rate"), ("division", "tip speed"), ("case1_balanced", "axial"), ("cantilever", "stiffness"))
+    columns = (
+        ("division", "axial rate"),
+        ("division", "tip speed"),
+        ("case1_balanced", "axial"),
+        ("cantilever", "stiffness"),
+    )
     lines = []
     for choice in PRESETS:
         found = [find(rows, choice.name, *column, USUAL_ACROSS) for column in columns]
@@ -176,16 +185,24 @@ def table_of_presets(rows: Sequence[Row]) -> str:
         errors = [percent(r.error) for r in found if r]
         name = choice.name.removeprefix("preset ")
         lines.append([f"`{name}`", f"{time_per_cell_hour_ms(rate):.2f} ms", percent(rate.inertia_error), *errors])
-    head = ["preset", "time per cell and hour", "inertia error", "axial rate", "tip speed", "Case 1 strain", "cantilever"]
+    head = [
+        "preset",
+        "time per cell and hour",
+        "inertia error",
+        "axial rate",
+        "tip speed",
+        "Case 1 strain",
+        "cantilever",
+    ]
     return table(head, lines)
 
 
 def table_of_steps(rows: Sequence[Row]) -> str:
     """Inertia: step against errors in growth."""
     own = [r for r in rows if (r.problem, r.measure, r.across) == ("growth", "axial rate", USUAL_ACROSS)]
-    own = [(r.level if r.choice == "step" else 1.0, r) for r in own if r.choice in ("step", DEFAULT_NAME)]
+    levels = [(r.level if r.choice == "step" else 1.0, r) for r in own if r.choice in ("step", DEFAULT_NAME)]
     lines = []
-    for level, r in sorted(own, key=lambda pair: -pair[0]):
+    for level, r in sorted(levels, key=lambda pair: -pair[0]):
         tip = find(rows, r.choice, "growth", "tip speed", USUAL_ACROSS, r.level)
         lines.append(
             [
@@ -262,45 +279,45 @@ PAGE = """\
 # What accuracy costs
 
 Small problems with known answers, computed in many ways. `tools/accuracy_cost.py` runs them, in 35 minutes on one core,
-and writes this page, its pictures and [accuracy_cost.csv](accuracy_cost.csv), a row for each run and measure; it goes on
-where it was stopped, and `--part 1/2` and `--part 2/2` share the runs between two cores. Errors are those against the closed
-form, and only where there is none against the finest run. Times are processor time of one thread, starting the program
-included: time on the wall where a core is free.
+and writes this page, its pictures and [accuracy_cost.csv](accuracy_cost.csv), a row for each run and measure; it goes
+on where it was stopped, and `--part 1/2` and `--part 2/2` share the runs between two cores. Errors are those against
+the closed form, and only where there is none against the finest run. Times are processor time of one thread, starting
+the program included: time on the wall where a core is free.
 
 {runs} Made with {program}.
 
 ## What to choose
 
-`[numerics] accuracy`, or `--accuracy`, chooses a preset. They were measured on growth and division, 8 regular cells across.
-The inertia error is the run's own (unbalanced axial force over p times the section) at its end.
+`[numerics] accuracy`, or `--accuracy`, chooses a preset. They were measured on growth and division, 8 regular cells
+across. The inertia error is the run's own (unbalanced axial force over p times the section) at its end.
 
 {presets}
-More cells make a run dearer by the cube of their number across in 2D: four times the cells and, because the step follows
-the cell, twice the steps. The cheapest run that was found for an error:
+More cells make a run dearer by the cube of their number across in 2D: four times the cells and, because the step
+follows the cell, twice the steps. The cheapest run that was found for an error:
 
 {targets}
 What the tables below say:
 
-- **Cells across** decide the error in growth, bending and contact. The **step** decides inertia; below twice balanced's it no
-  longer shows in the strain rate, so that `fast` is nearly as exact as `balanced` where nothing is touched. Strain under
-  pressure is exact to 0.1 % with any number of cells.
-- Keep the cell-shaped kernel: isotropic ones take 2 to 9 times the time and are less exact, the wide ones by far. A larger
-  kernel (eta 2) has a seventh to a third of the error in bending, for a third more in growth and in time.
-- Keep the corrected gradient (plain: nothing comes out right), quadratic at surfaces (linear: bending is soft). Quadratic
-  everywhere has three quarters of the error in growth and twice that in bending and contact.
+- **Cells across** decide the error in growth, bending and contact. The **step** decides inertia; below twice balanced's
+  it no longer shows in the strain rate, so that `fast` is nearly as exact as `balanced` where nothing is touched.
+  Strain under pressure is exact to 0.1 % with any number of cells.
+- Keep the cell-shaped kernel: isotropic ones take 2 to 9 times the time and are less exact, the wide ones by far. A
+  larger kernel (eta 2) has a seventh to a third of the error in bending, for a third more in growth and in time.
+- Keep the corrected gradient (plain: nothing comes out right), quadratic at surfaces (linear: bending is soft).
+  Quadratic everywhere has three quarters of the error in growth and twice that in bending and contact.
 - Keep the compensation of inertia: without it the same step has ten to twenty times the error in growth.
-- The predictor-corrector takes nearly twice the time for the same result; so do short windows, of which only the lengths of
-  dividing cells gain: cells divide between windows.
+- The predictor-corrector takes nearly twice the time for the same result; so do short windows, of which only the
+  lengths of dividing cells gain: cells divide between windows.
 - Non-affine control costs a fifth of the time; bending and contact need it.
 - A path along an obstacle needs cells: from 8 across on nothing else matters much to it.
 - Sleep (`[sleep]`) with its default tolerances takes half the time where most of a root is mature, and changes growth
   by less than a thousandth of a percent.
-- In soil keep the inertial number at 0.01 or below: at 0.1 the forces are twice as large. The other choices make no difference
-  beyond the samples' scatter.
+- In soil keep the inertial number at 0.01 or below: at 0.1 the forces are twice as large. The other choices make no
+  difference beyond the samples' scatter.
 
 ## Cells across
 
-The default (preset balanced) with finer cells: error, processor time, and the order observed from the first to the last.
+The default (preset balanced) with finer cells: error, processor time, and the order from the first to the last.
 
 {cells}
 An order near 0 stands where the error is no longer one of the cells' size: rounding of the settled state, or the step.
@@ -314,9 +331,9 @@ Inertia is numerical, and its error goes with the square of the step (growth, 8 
 
 Errors over the default's at the same number of cells across (2 is twice the error), the time as a median over the
 problems. The first row has the default's own errors. Where a run has no error, its reason: refused by the program, not
-measured (it did not come to rest), too long (over 90 s); an empty place is one where the choice means nothing, or, on the
-path, the run that the others are compared with. Wide isotropic kernels were not run at 12 across: they take 8 to 14 times the
-default's time there.
+measured (it did not come to rest), too long (over 90 s); an empty place is one where the choice means nothing, or, on
+the path, the run that the others are compared with. Wide isotropic kernels were not run at 12 across: they take 8 to 14
+times the default's time there.
 
 8 cells across, what is either or:
 
@@ -331,38 +348,38 @@ Float against double is not offered: the program computes in double. Everything 
 
 ## Sleep
 
-A root of 4 mm of which 1.7 mm grow, 8 cells across, 3 h. Tissue that strains no faster than `strain_rate_per_h` is left out of
-the computation; `stress_change` (here with a strain rate of 0.001 /h) is what wakes it again. A tolerance that freezes tissue
-which still strains saves nothing: the stress of what is frozen changes, and all wakes, over and over. So does a `stress_change`
-below the ripples that are always there.
+A root of 4 mm of which 1.7 mm grow, 8 cells across, 3 h. Tissue that strains no faster than `strain_rate_per_h` is left
+out of the computation; `stress_change` (here with a strain rate of 0.001 /h) is what wakes it again. A tolerance that
+freezes tissue which still strains saves nothing: the stress of what is frozen changes, and all wakes, over and over. So
+does a `stress_change` below the ripples that are always there.
 
 {sleep}
 ## The paper's scheme
 
 `pressure_deviator`, predictor-corrector, isotropic kernel (H_bar = 2, the smallest of Table 1), linear gradient, scalar
-inertia, no compensation, no non-affine control; 8 cells across. It is refused where its waves grow by themselves. Its 0.1 % in
-Case 1 is the law's: its pressure is linear in the density, the closed form's strain is logarithmic.
+inertia, no compensation, no non-affine control; 8 cells across. It is refused where its waves grow by themselves. Its
+0.1 % in Case 1 is the law's: its pressure is linear in the density, the closed form's strain is logarithmic.
 
 {paper}
 ## Soil
 
-Tiny soils, three samples of each: mean ± standard deviation over the samples; an error against the finest run is that of the
-same sample (other grain stiffness: of a sample packed with it). For the grain between probe and stone, where nothing is left to
-chance: over three stretches of the probe's way.
+Tiny soils, three samples of each: mean ± standard deviation over the samples; an error against the finest run is that
+of the same sample (other grain stiffness: of a sample packed with it). For the grain between probe and stone, where
+nothing is left to chance: over three stretches of the probe's way.
 
-- The **inertial number** decides. The force on a grain between probe and stone goes to Hertz's with it; what is left are the
-  grain's inertia and YADE's damping of its motion. Q and the force on the tip are about twice as large at 0.1 and a third too
-  large at 0.03; at the default 0.01 they lie within the scatter of those at a fifth of it and less.
-- **Interval, substeps and marker spacing** make no difference beyond the scatter. Growth under the forces that the root meets
-  follows the closed form within 1 %, and closer with markers at 0.4 of their radius.
+- The **inertial number** decides. The force on a grain between probe and stone goes to Hertz's with it; what is left
+  are the grain's inertia and YADE's damping of its motion. Q and the force on the tip are about twice as large at 0.1
+  and a third too large at 0.03; at the default 0.01 they lie within the scatter of those at a fifth of it and less.
+- **Interval, substeps and marker spacing** make no difference beyond the scatter. Growth under the forces that the root
+  meets follows the closed form within 1 %, and closer with markers at 0.4 of their radius.
 - **Grain stiffness** belongs to the soil as much as to the numerics: stiffer grains resist more.
 
 {soil}
 ## Diagrams
 
-One curve a choice, its points are numbers of cells across or, of choices that are numbers, their values (dashed; through the
-default's run). The grey band is the Pareto front; ringed runs lie on it: none is both cheaper and more exact. A choice that
-fails elsewhere can lie on a front by chance.
+One curve a choice, its points are numbers of cells across or, of choices that are numbers, their values (dashed;
+through the default's run). The grey band is the Pareto front; ringed runs lie on it: none is both cheaper and more
+exact. A choice that fails elsewhere can lie on a front by chance.
 
 {pictures}
 """

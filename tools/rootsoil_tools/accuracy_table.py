@@ -75,13 +75,14 @@ def finest(rows: Sequence[Row], row: Row) -> Row | None:
     most cells."""
     same = [r for r in rows if (r.problem, r.measure, r.status) == (row.problem, row.measure, "done")]
     named = [r for r in same if r.choice == FINEST_NAME]
-    return max(named or [r for r in same if r.choice == DEFAULT_NAME], key=lambda r: r.cell_steps, default=None)
+    candidates = named or [r for r in same if r.choice == DEFAULT_NAME]
+    return max(candidates, key=lambda r: r.cell_steps) if candidates else None
 
 
 def deviations(row: Row, measure: Measure, rows: Sequence[Row]) -> np.ndarray | None:
-    """The row's values as relative errors: against the closed form, which they are already, or against those of the finest
-    run over the scale. Of a soil a number for each sample, against the same sample. None where there is nothing to compare,
-    as with an older program's row that has other values."""
+    """The row's values as relative errors: against the closed form, which they are already, or against those of the
+    finest run over the scale. Of a soil a number for each sample, against the same sample. None where there is nothing
+    to compare, as with an older program's row that has other values."""
     if row.status != "done":
         return None
     values = numbers(row)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the runs of tools/accuracy_cost.py came to, against closed forms; without one, what is to be compared with another run.
+"""What the runs of tools/accuracy_cost.py came to, against closed forms, or for comparison with another run.
 
 Strains are logarithmic: the tissue's law is one of rates, so Eq. 8 gives the logarithm of a stretch; the engineering
 strain of 9e-4 would show an error of 0.05 % that is none. mm, h, MPa, N.
@@ -7,7 +7,7 @@ strain of 9e-4 would show an error of 0.05 % that is none. mm, h, MPa, N.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -25,26 +25,20 @@ Columns = Mapping[str, np.ndarray]  # of penetrometer.csv, (readings,)
 def strain_errors(run: Run, from_mm: float, to_mm: float, exact_radial: bool) -> Values:
     """Axial and radial strain at the end against Eq. 8, in bins of 0.1 mm; without exact_radial the radial strain over
     its largest."""
-    model = theory.model_of(run.scene)
+    model = run.frame(-1).closed_form
     edges = np.arange(round(from_mm * 10), round(to_mm * 10) + 1) / 10.0
     axial, radial = (np.log1p(s) for s in measure.strain_profiles(run.frame(0), run.frame(-1), 2, edges))
-    exact = model.radial_strain((edges[1:] + edges[:-1]) / 2.0)
+    middle = (edges[1:] + edges[:-1]) / 2.0
+    exact = model.at("radial_strain", middle)
     return {
-        "axial": list(axial / model.axial_strain() - 1.0),
+        "axial": list(axial / model.at("axial_strain", middle) - 1.0),
         "radial": list(radial / exact - 1.0 if exact_radial else radial / np.abs(exact).max()),
     }
 
 
-def last_window_h(run: Run) -> float:
-    """Duration of the window that ended with a frame; frames end windows."""
-    numerics = run.scene["numerics"]
-    steps = round(run.scene["output"]["every_h"] / numerics["step_h"])
-    return numerics["step_h"] * (steps % numerics["window_steps"] or numerics["window_steps"])
-
-
 def tip_speed_error(run: Run, from_h: float) -> list[float]:
     """The tip's way from a time on, against the closed form's at the lengths that the root had."""
-    model = theory.model_of(run.scene)
+    model = run.frame(-1).closed_form
     history = run.history()
     settled = history["time_h"] > from_h - 1e-9
     time, length = history["time_h"][settled], history["length_mm"][settled]
@@ -53,18 +47,13 @@ def tip_speed_error(run: Run, from_h: float) -> list[float]:
 
 
 def growth_errors(run: Run, from_h: float) -> Values:
-    """Tip's way from a time on, and the axial rate of cells where it is over a tenth of the peak.
-
-    A frame holds the distance from the tip at its last window's start, and the rate of that window."""
-    model = theory.model_of(run.scene)
-    fine = model.grid(2.0 * float(run.history()["length_mm"][-1]))
-    flow = model.velocity(fine)
-    peak = float(model.axial_rate(fine).max())
+    """Tip's way from a time on, and the axial rate of cells where it is over a tenth of the peak."""
+    model = run.frame(-1).closed_form
+    peak = float(model.axial_rate(model.grid(2.0 * float(run.history()["length_mm"][-1]))).max())
     errors = []
     for index in np.flatnonzero(run.times_h > from_h - 1e-9):
         frame = run.frame(int(index))
-        start = frame["distance_to_tip"]
-        exact = model.axial_rate(start + 0.5 * last_window_h(run) * np.interp(start, fine, flow))
+        exact = model.axial_rate(frame["distance_to_tip"])
         chosen = (exact > 0.1 * peak) & (frame["clamped"] == 0)
         errors.append(frame["axial_strain_rate"][chosen] / exact[chosen] - 1.0)
     return {
@@ -74,7 +63,7 @@ def growth_errors(run: Run, from_h: float) -> Values:
 
 
 def divided_lengths(
-    model: theory.Model, threshold: Callable[[np.ndarray], np.ndarray], s: np.ndarray, length: np.ndarray, hours: float
+    model: theory.ClosedForm, s: np.ndarray, length: np.ndarray, hours: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Where cells are after `hours` that started at s (mm) with a length (mm), and how long: the closed form's flow
     carries and stretches them, and a cell longer than the threshold becomes two, half as long and half a length apart.
@@ -88,7 +77,7 @@ def divided_lengths(
         half = s + 0.5 * dt * np.interp(s, fine, flow)
         length = length * np.exp(dt * np.interp(half, fine, rate))
         s = s + dt * np.interp(half, fine, flow)
-        long = length > threshold(s)
+        long = length > model.at("division_threshold", s)
         offset = np.where(long, length / 4.0, 0.0)
         s = np.concatenate([s - offset, s[long] + offset[long]])
         length = np.concatenate([np.where(long, length / 2.0, length), length[long] / 2.0])
@@ -96,23 +85,17 @@ def divided_lengths(
 
 
 def division_errors(run: Run, from_h: float) -> Values:
-    """growth_errors from a time on, and the profile of cell length: means over bins of 0.2 mm and the outputs from that time
-    on, against every cell of the first frame, carried, stretched and divided by the closed form. Over many outputs, since a
-    layer of cells that divides a moment earlier halves the length in its bin for that moment."""
-    model = theory.model_of(run.scene)
-    keys = run.scene["division"]
-
-    def threshold(s: np.ndarray) -> np.ndarray:
-        capped = np.minimum(s, keys["constant_beyond_mm"])
-        return keys["l0_mm"] * (keys["c_d"] + keys["s_d_per_mm2"] * (capped - keys["x_d_mm"]) ** 2)
-
+    """growth_errors from a time on, and the profile of cell length: means over bins of 0.2 mm and the outputs from that
+    time on, against every cell of the first frame, carried, stretched and divided by the closed form. Over many
+    outputs, since a layer of cells that divides a moment earlier halves the length in its bin for that moment."""
+    model = run.frame(-1).closed_form
     edges = measure.edges_of(1.0, 0.2)
     first = run.frame(0)
     time_h, s, length = first.time_h, first["distance_to_tip"], first.axial_lengths(2)
     exact, found = [], []
     for index in range(1, len(run.times_h)):
         frame = run.frame(index)
-        s, length = divided_lengths(model, threshold, s, length, frame.time_h - time_h)
+        s, length = divided_lengths(model, s, length, frame.time_h - time_h)
         time_h = frame.time_h
         if time_h > from_h - 1e-9:
             exact.append(measure.binned(s, length, edges).mean)
@@ -130,11 +113,11 @@ def sleep_values(run: Run, from_h: float) -> Values:
 
 
 def thrust_errors(run: Run) -> Values:
-    """The plate's force over the width where the root grows, against p (1 - nu_A)."""
-    model = theory.model_of(run.scene)
+    """The plate's force over the width where the root grows, against the arresting stress."""
+    model = run.frame(-1).closed_form
     width = 2.0 * float(measure.radii(run.frame(-1), 2, np.array([0.1, 0.6]))[0])
     stress = abs(float(run.history()["contact_force_x_N"][-1])) / width
-    return {"arrest stress": [stress / (model.p * (1.0 - model.nu_A)) - 1.0]}
+    return {"arrest stress": [stress / model.arrest_stress - 1.0]}
 
 
 def path_points(run: Run) -> Values:
@@ -162,8 +145,8 @@ def two_contacts_N(approach: np.ndarray, stiffness: tuple[float, float]) -> np.n
 def hertz_errors(
     scene: Mapping[str, Any], columns: Columns, stiffness: tuple[float, float], touch_mm: float, edges_mm: np.ndarray
 ) -> list[float]:
-    """Force on the probe, which presses a grain against a stone from touch_mm on, against Hertz: means over stretches of
-    its way. A stretch holds the same way however often the force is read: the grain's ringing averages out alike."""
+    """Force on the probe, which presses a grain against a stone from touch_mm on, against Hertz: means over stretches
+    of its way. A stretch holds the same way however often the force is read: the grain's ringing averages out alike."""
     probe = scene["penetrometer"]
     section = probe["diameter_mm"] * scene["soil"]["d_mean_mm"]
     depth = columns["depth_mm"]
@@ -185,7 +168,7 @@ def mean_Q(scene: Mapping[str, Any], columns: Columns) -> list[float]:
 
 
 def soil_values(run: Run, from_h: float) -> Values:
-    """From a time on: growth against what the closed form says with the soil's forces, and the mean force on the tip (N)."""
+    """From a time on: growth against the closed form with the soil's forces, and the mean force on the tip (N)."""
     history = run.history()
     later = history["time_h"] > from_h - 1e-9
     time, length = history["time_h"][later], history["length_mm"][later]

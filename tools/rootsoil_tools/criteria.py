@@ -42,8 +42,10 @@ KINETIC = Criterion("kinetic", "kinetic energy of motion that is not smooth, ove
 ELASTIC = Criterion("elastic", "mean square of the stress over p^2: elastic energy over that under p", 4.0)
 MOMENTUM = Criterion("momentum", "sum of all forces over the sum of their sizes", 1e-10)
 CELLS_LOST = Criterion("cells_kept", "cells at the start of which every descendant is there", 1.0, most=False)
-NEIGHBOURS = Criterion("neighbours", "fewest neighbours over 6 (3D: 12), or half of what a cell began with", 1.0, most=False)
-# Corners and the rim of a contact concentrate stress: next to them cells differ by a third of p or more, on average too.
+NEIGHBOURS = Criterion(
+    "neighbours", "fewest neighbours over 6 (3D: 12), or half of what a cell began with", 1.0, most=False
+)
+# Corners and the rim of a contact concentrate stress: cells there differ by a third of p or more, on average too.
 STRESS_NOISE = Criterion("stress_noise", "rms difference of the pressure of adjacent cells, over p", 0.5)
 CRACK = Criterion("crack", "widest gap that splits the tissue, in cell sizes (1: cells touch)", 2.0)
 GENERAL = (FINISHED, FINITE, KINETIC, ELASTIC, MOMENTUM, CELLS_LOST, NEIGHBOURS, STRESS_NOISE, CRACK)
@@ -113,7 +115,7 @@ def widest_gap(cells: int, first: np.ndarray, second: np.ndarray, distance: np.n
 
 
 def rough_motion(position: np.ndarray, velocity: np.ndarray, first: np.ndarray, second: np.ndarray) -> float:
-    """Part of sum v^2 that is not smooth: what a plane through the velocities (n, d) of a cell and those near it leaves."""
+    """Part of sum v^2 that is not smooth: what a plane through velocities (n, d) of a cell and those near it leaves."""
     total = float(np.sum(velocity**2))
     if total == 0.0:
         return 0.0
@@ -144,7 +146,7 @@ def mean_square_stress(frame: Frame, dimension: int) -> float:
 
 
 def cells_kept(frame: Frame, cells_start: int) -> float:
-    """1 where nothing is lost. Daughters count half their mother, so the sum of 2^-generation never changes (exactly)."""
+    """1 where nothing is lost. Daughters count half their mother, so the sum of 2^-generation never changes."""
     if len(np.unique(frame["cell_id"])) != frame.cells:
         return 0.0
     found = float(np.sum(0.5 ** frame["generation"]))
@@ -154,8 +156,8 @@ def cells_kept(frame: Frame, cells_start: int) -> float:
 def neighbours_kept(frames: list[Frame], dimension: int, enough: float | None = None) -> float:
     """Fewest neighbours over what a cell must keep, in all but the first of the frames.
 
-    A cell must keep `enough`, 6 (3D: 12) by default; one that began with fewer, itself or its nearest known ancestor, half of
-    those. No cell counts as having begun with more than most cells of the root.
+    A cell must keep `enough`, 6 (3D: 12) by default; one that began with fewer, itself or its nearest known ancestor,
+    half of those. No cell counts as having begun with more than most cells of the root.
     """
     enough = enough or (6.0 if dimension == 2 else 12.0)
     usual = float(np.median(frames[0]["neighbours"]))
@@ -173,7 +175,7 @@ def pressure_scale(scene: Mapping) -> float:
     """The largest |p| of a scene, MPa."""
     pressure = scene.get("pressure", {})
     values = [row[1] for row in pressure.get("table", [])] or [pressure.get("differential_MPa", 0.0)]
-    return max(map(abs, values)) or LEAST_PRESSURE_MPA
+    return max(abs(float(value)) for value in values) or LEAST_PRESSURE_MPA
 
 
 def finite_part(frames: list[Frame]) -> float:
@@ -182,7 +184,9 @@ def finite_part(frames: list[Frame]) -> float:
     return float(np.mean(np.concatenate([part.ravel() for part in finite])))
 
 
-def measures(folder: Path, hours: float, stress_MPa: float | None, neighbours: float | None) -> Iterator[tuple[Criterion, float]]:
+def measures(
+    folder: Path, hours: float, stress_MPa: float | None, neighbours: float | None
+) -> Iterator[tuple[Criterion, float]]:
     """Every general criterion's number, the worst over all frames of the run. Stresses relative to p or to stress_MPa.
 
     `neighbours`: as many are enough, where 6 (3D: 12) are not to be had.
@@ -209,7 +213,10 @@ def measures(folder: Path, hours: float, stress_MPa: float | None, neighbours: f
 
 def frame_measures(frame: Frame, dimension: int, p_MPa: float, kinetic_over_elastic: float) -> tuple[float, ...]:
     """KINETIC, ELASTIC, STRESS_NOISE and CRACK of one frame. The held base is tissue for CRACK only."""
-    i, j, distance = near_pairs(frame["position"][:, :dimension], frame.shape_matrices(dimension), SEARCHED)
+    shape = frame.shape_matrices(dimension)
+    if shape is None:
+        raise RunError("the frames have no field 'shape'; run the scene again with it in output.fields")
+    i, j, distance = near_pairs(frame["position"][:, :dimension], shape, SEARCHED)
     gap = widest_gap(frame.cells, i, j, distance)
     free = free_cells(frame)
     number = np.cumsum(frame["clamped"] == 0) - 1  # of a cell among the free ones
@@ -238,7 +245,11 @@ def reached_numbers(folder: Path) -> dict[str, float]:
 
 
 def judge(
-    folder: Path, hours: float, reaches: Mapping[str, float], stress_MPa: float | None = None, neighbours: float | None = None
+    folder: Path,
+    hours: float,
+    reaches: Mapping[str, float],
+    stress_MPa: float | None = None,
+    neighbours: float | None = None,
 ) -> list[Finding]:
     """All findings of a run that should last `hours` and come to `reaches`."""
     try:

@@ -23,6 +23,7 @@ matplotlib.use("Agg")
 SIMULATION = "#0072B2"
 THEORY = "#222222"
 DATA = "#D55E00"
+WARNING = "#c00000"
 OBSTACLE = "#B8B8B8"
 # Blue to red, all dark enough to be seen on white; differ in lightness as well.
 DIVISIONS = ["#313695", "#4F93C9", "#8FCBD9", "#F5C55A", "#F08243", "#B2182B"]
@@ -138,9 +139,7 @@ def draw_cells(
     axes.add_collection(cells, autolim=False)
 
 
-def draw_obstacles(
-    axes: Axes, obstacles: list[dict], box: tuple[float, float, float, float], offset: tuple[float, float]
-) -> None:
+def draw_obstacles(axes: Axes, obstacles: list[dict], box: tuple[float, ...], offset: tuple[float, float]) -> None:
     """The scene's obstacles in grey, cut off at `box` (x0, y0, x1, y1; mm, before the offset); 3D: in the plane."""
     x0, y0, x1, y1 = box
     reach = 2.0 * np.hypot(x1 - x0, y1 - y0)
@@ -188,8 +187,9 @@ def scale_bar(figure: Figure, right: float, bottom: float, scale: float) -> None
 
 
 def draw_profile(axes: Axes, profile: Profile) -> None:
-    """A mean with its band; empty bins are bridged."""
+    """A mean with its band where there is one; empty bins are bridged. Both are labelled, for a legend."""
     filled = np.isfinite(profile.mean)
-    s = profile.s_mm[filled]
-    axes.fill_between(s, profile.low[filled], profile.high[filled], color=SIMULATION, alpha=0.22, linewidth=0)
-    axes.plot(s, profile.mean[filled], color=SIMULATION, linewidth=1.3)
+    s, mean, low, high = (part[filled] for part in (profile.s_mm, profile.mean, profile.low, profile.high))
+    axes.plot(s, mean, color=SIMULATION, linewidth=1.3, label="simulation")
+    if np.any(high - low > 0.01 * np.max(np.abs(mean), initial=0.0)):  # thinner ones hide behind the line
+        axes.fill_between(s, low, high, color=SIMULATION, alpha=0.22, linewidth=0, label="16–84 %")

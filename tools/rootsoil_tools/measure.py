@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rootsoil_tools.runs import Frame, Run
-from rootsoil_tools.theory import Model
+from rootsoil_tools.theory import ClosedForm
 
 WINDOW_H = 10.0  # profiles are means over the last hours of a run
 
@@ -100,12 +100,12 @@ def strain_profiles(first: Frame, last: Frame, dimension: int, edges: np.ndarray
         x0, x1 = x0 - x0.mean(axis=0), x1 - x1.mean(axis=0)
         for row, axes in enumerate((slice(0, 1), slice(1, dimension))):
             spread = np.sum(x0[:, axes] ** 2)
-            if spread > 0.0:
+            if spread > 1e-12:  # mm^2; less is rounding, of one column of cells
                 strains[row, index] = np.sum(x0[:, axes] * x1[:, axes]) / spread - 1.0
     return strains[0], strains[1]
 
 
-def mature_radii(model: Model, run: Run) -> tuple[np.ndarray, np.ndarray]:
+def mature_radii(model: ClosedForm, run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Times (h) of the last WINDOW_H and the radius (mm) just behind the growth zone, over a quarter of its length.
 
     Only of tissue that has flowed through the growth zone since the start: tissue that was beyond the zone's first
@@ -122,34 +122,40 @@ def mature_radii(model: Model, run: Run) -> tuple[np.ndarray, np.ndarray]:
     return run.times_h[frames], np.array([radii(run.frame(i), run.dimension, window)[0] for i in frames])
 
 
-def mature_radius(model: Model, run: Run) -> float:
+def mature_radius(model: ClosedForm, run: Run) -> float:
     """Mean of mature_radii (mm); NaN where there is none."""
     radius = mature_radii(model, run)[1]
     return float(np.mean(radius)) if radius.size else float("nan")
 
 
-def radius_drift(model: Model, run: Run) -> float:
+def radius_drift(model: ClosedForm, run: Run) -> float:
     """Relative change of mature_radii per hour (1/h), from the least-squares line; NaN below three frames."""
     time, radius = mature_radii(model, run)
     return float(np.polyfit(time, np.log(radius), 1)[0]) if radius.size > 2 else float("nan")
 
 
 def tip_speed(run: Run) -> float:
-    """Growth of the root's length (mm/h) over the last WINDOW_H, from history.csv; NaN where that is too short."""
+    """Growth of the root's length (mm/h) over the last WINDOW_H, from history.csv.
+
+    With fewer than two rows in that time, what the last row says: the growth since the row before it, and in a run with
+    one row its speed at the start. NaN only without history.csv.
+    """
     history = run.history()
-    if "length_mm" not in history:
+    if not history:
         return float("nan")
     time, length = history["time_h"], history["length_mm"]
     inside = time >= time[-1] - min(WINDOW_H, (time[-1] - time[0]) / 3.0) - 1e-9
-    return float(np.polyfit(time[inside], length[inside], 1)[0]) if np.count_nonzero(inside) > 1 else float("nan")
+    if np.count_nonzero(inside) < 2:
+        return float(history["tip_speed_mm_h"][-1])
+    return float(np.polyfit(time[inside], length[inside], 1)[0])
 
 
-def arresting_force(model: Model, run: Run) -> float:
-    """Axial force that stops growth (closed form; N, in 2D N/mm): p (1 - (dimension - 1) nu_A) times the section."""
+def arresting_force(model: ClosedForm, run: Run) -> float:
+    """Axial force that stops growth (closed form; N, in 2D N/mm): the arresting stress times the section."""
     frame = run.frame(0)
     radius = float(np.max(radii(frame, run.dimension, np.linspace(0.0, float(frame["distance_to_tip"].max()), 21))))
     section = 2.0 * radius if run.dimension == 2 else np.pi * radius**2
-    return model.p * (1.0 - (run.dimension - 1) * model.nu_A) * section
+    return model.arrest_stress * section
 
 
 def running_mean(time: np.ndarray, values: np.ndarray, over: float) -> np.ndarray:

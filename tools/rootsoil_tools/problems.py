@@ -10,6 +10,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import subprocess
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from rootsoil_tools import answers, theory
+from rootsoil_tools import answers
 from rootsoil_tools.answers import Columns, Values
 from rootsoil_tools.runs import Run, read_summary
 from rootsoil_tools.scenes import Changes, Scene, scene_text, with_changes
@@ -74,9 +75,12 @@ class Problem:
         return next(m for m in self.measures if m.name == name)
 
 
-def changes_of(choice: Choice, step_h: float) -> Changes:
-    """What a choice changes where preset balanced has this step."""
-    return choice.changes if choice.step_factor is None else {**choice.changes, "numerics.step_h": choice.step_factor * step_h}
+def usual_step_h(program: Path, scene_file: Path) -> float:
+    """The step (h) that the program takes for a scene."""
+    said = subprocess.run(
+        [str(program), "check", str(scene_file), "--json"], check=True, capture_output=True, text=True
+    )
+    return float(json.loads(said.stdout)["step_h"])
 
 
 # ---- kinds of problems ----------------------------------------------------------------------------
@@ -95,26 +99,32 @@ def scene_problem(
     measures: tuple[Measure, ...],
     scene: Callable[[int], Scene],
     read: Callable[[Run], Values],
-    step_h: Callable[[int], float] = lambda _: math.nan,
     soil: bool = False,
 ) -> Problem:
-    """A problem that `rootsoil run` solves, with soil once for each sample. `scene` and `step_h` (of preset balanced) of
-    the cells across."""
+    """A problem that `rootsoil run` solves, with soil once for each sample. `scene` of the cells across."""
     names = [f"sample{seed}" for seed in range(1, SAMPLES + 1)] if soil else ["run"]
 
     def prepare(programs: Path, folder: Path, across: int, choice: Choice) -> list[list[str]]:
         commands = []
         for seed, out in enumerate(names, 1):
-            own = with_changes(scene(across), {**changes_of(choice, step_h(across)), **({"soil.seed": seed} if soil else {})})
-            (folder / f"{out}.toml").write_text(scene_text(own), encoding="utf-8")
-            commands.append([str(programs / "rootsoil"), "run", f"{out}.toml", "--out", out, "--threads", "1", "--quiet"])
+            own, file = with_changes(scene(across), {"soil.seed": seed} if soil else {}), folder / f"{out}.toml"
+            file.write_text(scene_text(own), encoding="utf-8")
+            changes = dict(choice.changes)
+            if choice.step_factor is not None:
+                changes["numerics.step_h"] = choice.step_factor * usual_step_h(programs / "rootsoil", file)
+            file.write_text(scene_text(with_changes(own, changes)), encoding="utf-8")
+            commands.append(
+                [str(programs / "rootsoil"), "run", f"{out}.toml", "--out", out, "--threads", "1", "--quiet"]
+            )
         return commands
 
     def read_folder(folder: Path) -> tuple[Values, Cost]:
         runs = [Run(folder / out) for out in names]
         values = [read(run) for run in runs]
         costs = [run_cost(run, read_summary(run.folder)) for run in runs]
-        mean = Cost(*(float(np.mean([getattr(c, key) for c in costs])) for key in ("cells", "steps", "hours", "inertia_error")))
+        mean = Cost(
+            *(float(np.mean([getattr(c, key) for c in costs])) for key in ("cells", "steps", "hours", "inertia_error"))
+        )
         return {key: [x for v in values for x in v[key]] for key in values[0]}, mean
 
     return Problem(name, title, measures, prepare, read_folder, soil)
@@ -170,7 +180,7 @@ def penetrometer_problem(
 def root_scene(
     name: str, hours: float, every_h: float, length_mm: float, diameter_mm: float, across: int, *more: Changes
 ) -> Scene:
-    """A root under 1 MPa, and changes."""
+    """A root under 1 MPa, and changes. With inertia, unless they say otherwise: the study measures its errors."""
     base = {
         "scene": {"name": name, "duration_h": hours},
         "root": {"length_mm": length_mm, "radius_mm": diameter_mm / 2.0, "cell_size_mm": diameter_mm / across},
@@ -179,7 +189,9 @@ def root_scene(
         "non_affine_control": {},
         "output": {"every_h": every_h},
     }
-    return with_changes(base, {key: value for changes in more for key, value in changes.items()})
+    scene = with_changes(base, {key: value for changes in more for key, value in changes.items()})
+    scene.setdefault("numerics", {}).setdefault("stepper", "symplectic")
+    return scene
 
 
 def stiffening(x_e_mm: float, s_e_per_mm: float, c_e: float) -> Changes:
@@ -191,7 +203,9 @@ def stiffening(x_e_mm: float, s_e_per_mm: float, c_e: float) -> Changes:
 STIFF = stiffening(0.0, 0.0, 1.0)
 
 
-def softening(lambda0: float, x_g_mm: float, s_g_mm: float, c_g: float, mature: tuple[float, float] | None = None) -> Changes:
+def softening(
+    lambda0: float, x_g_mm: float, s_g_mm: float, c_g: float, mature: tuple[float, float] | None = None
+) -> Changes:
     """lambda(s) of Eq. 6, in ug/mm^3/h; `mature`: where it ends and over which width (mm)."""
     ends = {"mature_at_mm": mature[0], "mature_width_mm": mature[1]} if mature else {}
     return {"growth": {"lambda0_ug_mm3_h": lambda0, "x_g_mm": x_g_mm, "s_g_mm": s_g_mm, "c_g": c_g, **ends}}
@@ -218,20 +232,14 @@ def division_scene(across: int) -> Scene:
     return with_changes(growth_scene(3.0, across), {"division": keys})
 
 
-def growth_step_h(across: int) -> float:
-    """The tip moves by a hundredth of a cell in a step, as preset balanced has it."""
-    scene = growth_scene(1.0, across)
-    return min(1e-3, 0.01 * scene["root"]["cell_size_mm"] / theory.model_of(scene).tip_speed(2.0))
-
-
 def plane(x_mm: float, normal: tuple[float, float], friction: float) -> dict[str, Any]:
     """An obstacle."""
     return {"name": "plane", "shape": "plane", "position_mm": [x_mm, 0.0], "normal": [*normal], "friction": friction}
 
 
 def thrust_scene(across: int) -> Scene:
-    """A root whose flat tip touches a plate; it comes to rest, and the step only has to leave time for it. The damping is
-    about twice the slowest axial frequency, which goes as the inertia's 1/step."""
+    """A root whose flat tip touches a plate; it comes to rest, and the step only has to leave time for it. The damping
+    is about twice the slowest axial frequency, which goes as the inertia's 1/step."""
     step_h = 1.6e-4 / across
     own = {
         "root.cap": False,
@@ -241,19 +249,16 @@ def thrust_scene(across: int) -> Scene:
     return root_scene("thrust", 0.02, 0.02, 0.8, 0.1, across, STIFF, softening(4.34e5, 0.1, 0.2, -1.0), own)
 
 
-def path_step_h(across: int) -> float:
-    """Small: the contact is to be quasi-static, not an impact."""
-    return 1.5e-4 / across
-
-
 def path_scene(across: int) -> Scene:
-    """A root that grows along a plane at 45 degrees."""
+    """A root that grows along a plane at 45 degrees, in small steps: contact is to be quasi-static, not an impact."""
     profiles = (stiffening(0.05, 40.0, 0.2), softening(4.34e5, 0.1, 0.2, -0.95, (0.7, 0.2)))
-    own = {"obstacle": [plane(1.03, (-0.7071, 0.7071), 0.2)], "numerics.step_h": path_step_h(across)}
+    own = {"obstacle": [plane(1.03, (-0.7071, 0.7071), 0.2)], "numerics.step_h": 1.5e-4 / across}
     return root_scene("path", 0.75, 0.25, 1.0, 0.12, across, *profiles, own)
 
 
-def soil_box(x_mm: tuple[float, float], half_width_mm: float, walls: str, pressure_MPa: float, E_MPa: float) -> dict[str, Any]:
+def soil_box(
+    x_mm: tuple[float, float], half_width_mm: float, walls: str, pressure_MPa: float, E_MPa: float
+) -> dict[str, Any]:
     """[soil] in 2D, without its grains."""
     return {
         "box_from_mm": [x_mm[0], -half_width_mm],
@@ -269,7 +274,11 @@ def soil_box(x_mm: tuple[float, float], half_width_mm: float, walls: str, pressu
 def soil_scene(across: int) -> Scene:
     """A root among some hundred grains. Whole windows of 20 steps fit into the interval."""
     profiles = (stiffening(0.1, 20.0, 0.2), softening(4e5, 0.2, 0.4, -0.95, (1.1, 0.3)))
-    soil = {**soil_box((0.8, 2.8), 1.0, "mixed", 0.04, 100.0), "d_range_mm": [0.15, 0.25], "contact": {"interval_h": 4e-3}}
+    soil = {
+        **soil_box((0.8, 2.8), 1.0, "mixed", 0.04, 100.0),
+        "d_range_mm": [0.15, 0.25],
+        "contact": {"interval_h": 4e-3},
+    }
     own = {"scene.dimension": 2, "soil": soil, "numerics.step_h": 6e-4 / across}
     return root_scene("soil", 0.6, 0.02, 1.6, 0.4, across, *profiles, own)
 
@@ -296,7 +305,12 @@ HERTZ: Scene = {
         "contact_law": "hertz_mindlin",
         "poisson": 0.3,
         "obstacle": [
-            {"name": "stone", "shape": "stone", "position_mm": [GRAIN_AT_MM + GRAIN_MM + STONE_MM, 0.0], "radius_mm": STONE_MM},
+            {
+                "name": "stone",
+                "shape": "stone",
+                "position_mm": [GRAIN_AT_MM + GRAIN_MM + STONE_MM, 0.0],
+                "radius_mm": STONE_MM,
+            },
             {"name": "holder", "shape": "stone", "position_mm": [*HOLDER_AT_MM], "radius_mm": STONE_MM},
         ],
     },
@@ -315,7 +329,10 @@ HERTZ: Scene = {
 def hertz_errors(scene: Scene, columns: Columns) -> list[float]:
     """Force on the probe against that of its two contacts in a row."""
     material = (scene["soil"]["E_MPa"], scene["soil"]["poisson"])
-    stiffness = tuple(answers.hertz_stiffness(*material, GRAIN_MM, other) for other in (PROBE_MM, STONE_MM))
+    stiffness = (
+        answers.hertz_stiffness(*material, GRAIN_MM, PROBE_MM),
+        answers.hertz_stiffness(*material, GRAIN_MM, STONE_MM),
+    )
     return answers.hertz_errors(scene, columns, stiffness, GRAIN_AT_MM - GRAIN_MM, HERTZ_STRETCHES_MM)
 
 
@@ -323,7 +340,9 @@ def hertz_errors(scene: Scene, columns: Columns) -> list[float]:
 
 TIP = Measure("tip speed", "tip's way against the closed form")
 RATE = Measure("axial rate", "axial strain rate, rms over cells, against the closed form")
-LENGTH = Measure("cell length", "cell length, rms of bins of 0.2 mm, mean over time, against the closed form with divisions")
+LENGTH = Measure(
+    "cell length", "cell length, rms of bins of 0.2 mm, mean over time, against the closed form with divisions"
+)
 
 
 def strain_problem(name: str, title: str, anisotropy: Changes, exact_radial: bool = True) -> Problem:
@@ -356,7 +375,6 @@ def all_problems() -> list[Problem]:
             (TIP, RATE),
             lambda across: growth_scene(1.0, across),
             lambda run: answers.growth_errors(run, 0.4),
-            growth_step_h,
         ),
         scene_problem(
             "division",
@@ -364,7 +382,6 @@ def all_problems() -> list[Problem]:
             (TIP, RATE, LENGTH),
             division_scene,
             lambda run: answers.division_errors(run, 1.0),
-            growth_step_h,
         ),
         scene_problem(
             "sleep",
@@ -372,10 +389,11 @@ def all_problems() -> list[Problem]:
             (TIP, Measure("growth", "growth, rms over outputs, against the run without sleep", True)),
             lambda across: growth_scene(3.0, across, 4.0),
             lambda run: answers.sleep_values(run, 1.0),
-            growth_step_h,
         ),
         beam_problem("cantilever", "Cantilever", "deflection beyond one depth from the clamp, against Timoshenko's"),
-        beam_problem("euler", "Euler load", "load of the part beyond one depth from the clamp, against Euler's and Engesser's"),
+        beam_problem(
+            "euler", "Euler load", "load of the part beyond one depth from the clamp, against Euler's and Engesser's"
+        ),
         scene_problem(
             "thrust",
             "Thrust on a plate",
@@ -386,10 +404,13 @@ def all_problems() -> list[Problem]:
         scene_problem(
             "path",
             "Path along an obstacle",
-            (Measure("path", "tip's place at 0.25, 0.5 and 0.75 h, rms, in diameters, against the finest run", True, 1.0),),
+            (
+                Measure(
+                    "path", "tip's place at 0.25, 0.5 and 0.75 h, rms, in diameters, against the finest run", True, 1.0
+                ),
+            ),
             path_scene,
             answers.path_points,
-            path_step_h,
         ),
         penetrometer_problem(
             "hertz",

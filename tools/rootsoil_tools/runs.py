@@ -12,6 +12,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from rootsoil_tools.theory import ClosedForm
+
 
 class RunError(Exception):
     """A run's folder cannot be used; the message says why."""
@@ -23,12 +25,19 @@ class Frame:
 
     time_h: float
     fields: dict[str, np.ndarray]
-    points: dict[str, dict[str, np.ndarray]] = field(default_factory=dict)  # beside the cells: markers, grains ...
+    tables: dict[str, dict[str, np.ndarray]] = field(default_factory=dict)  # beside the cells: markers, grains ...
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.fields:
             raise RunError(f"run.h5 has no field '{name}' at {self.time_h:g} h (there are: {', '.join(self.fields)})")
         return self.fields[name]
+
+    @property
+    def closed_form(self) -> ClosedForm:
+        """What the measured profiles are to be compared with."""
+        if "closed_form" not in self.tables:
+            raise RunError(f"run.h5 has no closed form at {self.time_h:g} h: an older program wrote it; run it again")
+        return ClosedForm(self.tables["closed_form"])
 
     @property
     def cells(self) -> int:
@@ -92,12 +101,12 @@ class Run:
         with self._open() as file:
             group = file["frames"][self._groups[index]]
             fields = {name: dataset[()] for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
-            points = {
+            tables = {
                 name: {column: dataset[()] for column, dataset in subgroup.items()}
                 for name, subgroup in group.items()
                 if isinstance(subgroup, h5py.Group)
             }
-        return Frame(float(self.times_h[index]), fields, points)
+        return Frame(float(self.times_h[index]), fields, tables)
 
     def window(self, hours: float, most: int = 40) -> list[int]:
         """Indices of at most `most` frames in the last `hours` h, but in no more than the last third of the run."""
@@ -107,13 +116,13 @@ class Run:
         return [int(i) for i in inside[chosen]]
 
     def history(self) -> dict[str, np.ndarray]:
-        """Columns of history.csv; empty where there is none."""
+        """Columns of history.csv, NaN where a field is empty; no column where there is no file."""
         path = self.folder / "history.csv"
         if not path.is_file():
             return {}
         with path.open(newline="", encoding="utf-8") as file:
             rows = [row for row in csv.DictReader(file) if None not in row.values()]
-        return {name: np.array([float(row[name]) for row in rows]) for name in (rows[0] if rows else {})}
+        return {name: np.array([float(row[name] or "nan") for row in rows]) for name in (rows[0] if rows else {})}
 
 
 def read_summary(folder: Path) -> dict:

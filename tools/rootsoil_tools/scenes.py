@@ -12,7 +12,7 @@ import tomli_w
 Scene = dict[str, Any]
 Changes = Mapping[str, Any]  # "section.key" or "section": value; None removes it
 
-# Section 4.4 of the paper and its Eq. 1-4 to the letter; inertia from the stability bound, without which there is no step.
+# Section 4.4 of the paper and its Eq. 1-4 to the letter; inertia from the stability bound: without, there is no step.
 PAPER: Changes = {
     "tissue.law": "pressure_deviator",
     "numerics.kernel": "isotropic",

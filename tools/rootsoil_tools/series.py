@@ -32,13 +32,12 @@ class Series:
     program: Path = PROGRAM
     arguments: Sequence[str] = ()
     threads: int | None = None
-    version: str = field(init=False)
+    program_sha256: str = field(init=False)  # a build is known by its bytes: two may say the same version
 
     def __post_init__(self) -> None:
         if not self.program.is_file():
             raise RunError(f"{self.program} is not there; build it with tools/build.sh")
-        said = subprocess.run([self.program, "version"], capture_output=True, text=True, check=True)
-        object.__setattr__(self, "version", said.stdout.strip())
+        object.__setattr__(self, "program_sha256", hashlib.sha256(self.program.read_bytes()).hexdigest())
 
     def _request(self, settings: Sequence[str]) -> dict:
         """What makes two runs the same."""
@@ -47,7 +46,7 @@ class Series:
             "scene_sha256": digest,
             "settings": list(settings),
             "arguments": list(self.arguments),
-            "version": self.version,
+            "program_sha256": self.program_sha256,
         }
 
     def _claim(self, name: str, settings: Sequence[str]) -> Path:
@@ -55,7 +54,7 @@ class Series:
         folder, note, request = self.out / name, self.out / f"{name}.json", self._request(settings)
         if folder.exists() and (not note.is_file() or json.loads(note.read_text(encoding="utf-8")) != request):
             raise RunError(
-                f"{folder} holds a run of another scene, other arguments or another version of the program; "
+                f"{folder} holds a run of another scene, other arguments or another build of the program; "
                 "remove it or choose another --out"
             )
         self.out.mkdir(parents=True, exist_ok=True)

@@ -18,19 +18,19 @@ POINTS_PER_MM = 72.0 / 25.4
 
 def has_grains(frame: Frame) -> bool:
     """Whether there is anything of this module to draw."""
-    return "grains" in frame.points
+    return "grains" in frame.tables
 
 
 def extent(frame: Frame) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner (x, y) of the box that holds all grains."""
-    centre, radius = frame.points["grains"]["position"][:, :2], frame.points["grains"]["radius"][:, None]
+    centre, radius = frame.tables["grains"]["position"][:, :2], frame.tables["grains"]["radius"][:, None]
     return (centre - radius).min(axis=0), (centre + radius).max(axis=0)
 
 
 def force_lines(frame: Frame) -> tuple[np.ndarray, np.ndarray]:
     """Contacts as lines (n, 2, 3) and their forces (n): between the centres of two grains, or from a grain's centre to
     where it touches the root, a wall or an obstacle."""
-    grains, contacts = frame.points["grains"], frame.points["soil_contacts"]
+    grains, contacts = frame.tables["grains"], frame.tables["soil_contacts"]
     order = np.argsort(grains["grain_id"])
     sorted_id = grains["grain_id"][order]
 
@@ -44,7 +44,7 @@ def force_lines(frame: Frame) -> tuple[np.ndarray, np.ndarray]:
 
 def strong_force(frame: Frame) -> float:
     """A force that only a few contacts exceed, to a round number."""
-    force = np.linalg.norm(frame.points["soil_contacts"]["force"], axis=1)
+    force = np.linalg.norm(frame.tables["soil_contacts"]["force"], axis=1)
     if not force.size or not force.max() > 0.0:
         return 1.0
     raw = np.percentile(force[force > 0.0], 98)
@@ -62,7 +62,7 @@ def rigid_shape(obstacle: dict) -> dict:
 
 def draw_grains(axes: Axes, frame: Frame, dimension: int, offset: Sequence[float] = (0.0, 0.0)) -> None:
     """Grains as discs; in 3D those that the plane z = 0 cuts, as large as the cut."""
-    centre, radius = frame.points["grains"]["position"], frame.points["grains"]["radius"]
+    centre, radius = frame.tables["grains"]["position"], frame.tables["grains"]["radius"]
     if dimension == 3:
         cut = np.abs(centre[:, 2]) < radius
         centre, radius = centre[cut], np.sqrt(radius[cut] ** 2 - centre[cut, 2] ** 2)
@@ -82,12 +82,14 @@ def draw_grains(axes: Axes, frame: Frame, dimension: int, offset: Sequence[float
     )
 
 
-def draw_force_chains(axes: Axes, frame: Frame, dimension: int, strong: float, offset: Sequence[float] = (0.0, 0.0)) -> None:
+def draw_force_chains(
+    axes: Axes, frame: Frame, dimension: int, strong: float, offset: Sequence[float] = (0.0, 0.0)
+) -> None:
     """Contacts as lines whose width is proportional to the force; in 3D those near the plane z = 0."""
     lines, force = force_lines(frame)
     shown = force > 0.02 * strong
     if dimension == 3:
-        shown &= np.abs(lines[:, :, 2]).max(axis=1) < 1.5 * frame.points["grains"]["radius"].mean()
+        shown &= np.abs(lines[:, :, 2]).max(axis=1) < 1.5 * frame.tables["grains"]["radius"].mean()
     axes.add_collection(
         LineCollection(
             lines[shown][:, :, :2] + offset,

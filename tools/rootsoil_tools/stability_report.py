@@ -48,7 +48,7 @@ class CaseRow:
 
 @dataclass(frozen=True)
 class EdgeRow:
-    """How far the stable region reaches from `start` towards `furthest`: stable at `good`, not at `bad` for `failed`."""
+    """How far the stable region reaches from `start` to `furthest`: stable at `good`, not at `bad` for `failed`."""
 
     edge: str
     unit: str
@@ -75,7 +75,11 @@ class EdgeRow:
             return f"not stable at {self.start:.3g}{unit} ({self.failed})"
         if self.bad is None:
             return f"stable to {self.good:.3g}{unit}, the furthest tried"
-        end = f"refused at {self.bad:.3g}{unit}" if self.failed == "refused" else f"at {self.bad:.3g} fails: {self.failed}"
+        end = (
+            f"refused at {self.bad:.3g}{unit}"
+            if self.failed == "refused"
+            else f"at {self.bad:.3g} fails: {self.failed}"
+        )
         return f"stable to {self.good:.3g}{unit}; {end}"
 
 
@@ -147,7 +151,7 @@ def verdict(rows: list[CaseRow]) -> str:
 
 
 def margin_panel(axes: Axes, cases: list[CaseRow]) -> None:
-    """Cases against criteria: the darker, the larger the margin; failed ones stand out. The paper's verdict beside them."""
+    """Cases against criteria: the darker, the larger the margin; failed ones stand out. Beside, the paper's verdict."""
     table = by_case(cases)
     names = [criterion.name for criterion in GENERAL] + ["restart"]
     columns = [*names, "case's own", "paper's scheme"]
@@ -164,9 +168,9 @@ def margin_panel(axes: Axes, cases: list[CaseRow]) -> None:
             scaled = [row for row in paper if not row.passed or row.criterion not in BINARY]
             cells["paper's scheme"] = broken[0] if broken else min(scaled, key=lambda row: row.margin)
         for x, column in enumerate(columns):
-            row = cells.get(column)
-            if row is None:
+            if column not in cells:
                 continue
+            row = cells[column]
             binary = column in BINARY
             strength = 1.0 if binary else np.clip(np.log10(max(row.margin, 1.0)) / 2.0, 0.0, 1.0)
             colour = shades(strength) if row.passed else FAILS
@@ -234,29 +238,29 @@ PAGE = """<!-- SPDX-License-Identifier: MIT -->
 # What stays stable
 
 `tools/stability.py` wrote this page ({minutes}; `--quick`: half a minute). The cases are in
-`tests/stability/hard_cases.py`, the criteria in `tools/rootsoil_tools/criteria.py`; `tests/stability` runs the short versions and fails when
-a margin falls below the one recorded in `tests/stability/recorded_margins.csv`.
+`tests/stability/hard_cases.py`, the criteria in `tools/rootsoil_tools/criteria.py`; `tests/stability` runs the short
+versions and fails when a margin falls below the one recorded in `tests/stability/recorded_margins.csv`.
 
-![A: hard cases against criteria, margins as multiples of the bound. B: edges of the stable region](images/stability.png)
+![A: hard cases and criteria, margins as multiples of the bound. B: edges of the stable region](images/stability.png)
 
 {count}
 
 The paper's scheme is Eq. 1-4 to the letter (`law = "pressure_deviator"`), isotropic kernel, linear gradient,
-predictor-corrector, inertia from the stability bound. It needs `allow_unstable` where it is not hyperbolic, which is nearly
-everywhere at E_R/E_A = 15, and breaks there within a few tenths of an hour.
+predictor-corrector, inertia from the stability bound. It needs `allow_unstable` where it is not hyperbolic, which is
+nearly everywhere at E_R/E_A = 15, and breaks there within a few tenths of an hour.
 
 ## What to do with it
 
 {advice}
 - **Width.** One, two and three cells across are stable; what they bend like is another matter (docs/accuracy_cost.md).
-- **Contact.** Keep the tip's way in a step below 1/1000 of a cell, as these cases do. Growing tissue yields: pressed for hours it
-  folds, and where it folds stress is concentrated.
-- **Not in the model.** A root that meets itself does not notice: a root of very unequal cells (`irregular`), which curls, does so
-  after 20 h, and its stress gets noisy then.
+- **Contact.** Keep the tip's way in a step below 1/1000 of a cell, as these cases do. Growing tissue yields: pressed
+  for hours it folds, and where it folds stress is concentrated.
+- **Not in the model.** A root that meets itself does not notice: a root of very unequal cells (`irregular`), which
+  curls, does so after 20 h, and its stress gets noisy then.
 
 ## Criteria
 
-A run is stable when every number keeps its bound in every frame. The margin is how many times better than the bound it is.
+A run is stable when every number keeps its bound in every frame. The margin is how many times better than that it is.
 
 {criteria}
 
@@ -268,8 +272,8 @@ The default scheme runs the hours given, {restart}; the paper's runs a shorter v
 
 ## Edges of the stable region
 
-Found by bisection in the logarithm, to {resolution:.0f} %, on the base case of 200 cells. The paper's scheme is tried with
-E_R = E_A and growth that is the same everywhere.
+Found by bisection in the logarithm, to {resolution:.0f} %, on the base case of 200 cells. The paper's scheme is tried
+with E_R = E_A and growth that is the same everywhere.
 
 {edges}
 """
@@ -285,19 +289,19 @@ def advice(edges: list[EdgeRow]) -> str:
     """What a user can do, from the edges that were found."""
     found = {(row.edge, row.scheme): row for row in edges}
     lines = []
-    step, narrow = found.get(("step", "default")), found.get(("step_window_1", "default"))
-    if step and step.good and narrow and narrow.good:
+    step = found.get(("step", "default"))
+    if step and step.good:
         lines.append(
-            f"- **Step.** The base case is stable up to a step of {step.good:.2g} h, {step.good / step.start:.1f} times what the "
-            f"program chooses; with `window_steps = 1` up to {narrow.good:.2g} h. Inertia follows the step (docs/decisions/0003), so no "
-            "step is unstable by itself; what ends it is inertia that outweighs the tissue's stress. Accuracy ends before: look at "
-            "`inertia_error`."
+            f"- **Step.** The base case is stable up to a step of {step.good:.2g} h, {step.good / step.start:.1f} "
+            "times what the program chooses. Every step ends in balance, and one that finds none is cut "
+            "(docs/decisions/0021); accuracy ends before."
         )
     ratio, paper = found.get(("ratio_up", "default")), found.get(("ratio_up", "paper"))
     if ratio and paper:
         lines.append(
-            f"- **E_R/E_A.** {ratio.verdict().capitalize()}; a scene beyond E_A/nu_A^2 (278 here) is refused. With the paper's law: "
-            f"{paper.verdict()}. It is refused from about 4, where it is not hyperbolic; use `law = \"elastic_growth\"`."
+            f"- **E_R/E_A.** {ratio.verdict().capitalize()}; a scene beyond E_A/nu_A^2 (278 here) is refused. With the "
+            f"paper's law: {paper.verdict()}. It is refused from about 2.7, where it is not hyperbolic; use "
+            '`law = "elastic_growth"`.'
         )
     stretch = found.get(("stretch", "default"))
     if stretch:
@@ -305,8 +309,9 @@ def advice(edges: list[EdgeRow]) -> str:
     fixed, free = found.get(("lambda_up_fixed_step", "default")), found.get(("lambda_up", "default"))
     if free and fixed:
         lines.append(
-            f"- **lambda0**, times the base's. With the step left to the program: {free.verdict()}. With the step kept: "
-            f"{fixed.verdict()}. It is the product of strain rate and step that counts: leave `step_h` out when you raise lambda0."
+            f"- **lambda0**, times the base's. With the step left to the program: {free.verdict()}. With the step "
+            f"kept: {fixed.verdict()}. It is the product of strain rate and step that counts: leave `step_h` out when "
+            "you raise lambda0."
         )
     return "\n".join(lines)
 
@@ -315,7 +320,9 @@ def write_page(cases: list[CaseRow], edges: list[EdgeRow], remarks: Mapping[str,
     """docs/stability.md. `remarks`: by case, why it fails, printed where it does."""
     table = by_case(cases)
     stable = [name for name, schemes in table.items() if all(row.passed for row in schemes["default"])]
-    paper = [name for name, schemes in table.items() if schemes.get("paper") and all(row.passed for row in schemes["paper"])]
+    paper = [
+        name for name, schemes in table.items() if schemes.get("paper") and all(row.passed for row in schemes["paper"])
+    ]
     failing = [name for name in table if name not in stable]
     count = f"The default scheme is stable in {len(stable)} of {len(table)} hard cases, the paper's in {len(paper)}."
     if failing:
@@ -335,7 +342,8 @@ def write_page(cases: list[CaseRow], edges: list[EdgeRow], remarks: Mapping[str,
             ["criterion", "number", "bound"],
             [[c.name, c.meaning, f"{'at most' if c.most else 'at least'} {c.bound:g}"] for c in GENERAL],
         ),
-        restart=f"and once more, short, with a restart in the middle: the same bits in {sum(r.passed for r in restarts)} of {len(restarts)}",
+        restart="and once more, short, with a restart in the middle: the same bits in "
+        f"{sum(r.passed for r in restarts)} of {len(restarts)}",
         cases=markdown(["case", "what is hard", "h", "default", "paper's scheme"], rows),
         resolution=15,
         edges=markdown(

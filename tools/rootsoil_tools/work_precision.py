@@ -88,8 +88,8 @@ class Point:
 
 
 def points_of(rows: Iterable[Row], problem: str, measure: str, cost: str) -> list[Point]:
-    """The runs of a problem that have an error; `cost` is a column. The default's run lies on the curve of every choice that
-    is a number, too."""
+    """The runs of a problem that have an error; `cost` is a column. The default's run lies on the curve of every choice
+    that is a number, too."""
     found = [
         r
         for r in rows
@@ -187,8 +187,10 @@ def only_time(problem: Problem) -> bool:
     return problem.soil or problem.name == "sleep"
 
 
-def draw_picture(rows: Sequence[Row], pairs: Sequence[tuple[str, str]], problems: dict[str, Problem], path: Path) -> bool:
-    """Two panels for each problem and measure that has runs, one where only time is the cost. False where there are none."""
+def draw_picture(
+    rows: Sequence[Row], pairs: Sequence[tuple[str, str]], problems: dict[str, Problem], path: Path
+) -> bool:
+    """Two panels for each problem and measure that has runs, one where only time is the cost. False: none has."""
     panels = [
         (problem, measure, cost)
         for problem, measure in pairs
@@ -217,7 +219,9 @@ def draw_picture(rows: Sequence[Row], pairs: Sequence[tuple[str, str]], problems
             name = f"{problems[problem].title}: {problems[problem].measure(measure).meaning}"
             wrapped = textwrap.fill(name, 50 if only_time(problems[problem]) else 120)
             figure.text(left / 180.0, (bottom + height + 1.5) / total, wrapped, size=7.5, va="bottom")
-            paper.letter(figure, left - 11.0, bottom + height + 1.0, "ABCDEFGH"[len({p[:2] for p in panels[: index + 1]}) - 1])
+            paper.letter(
+                figure, left - 11.0, bottom + height + 1.0, "ABCDEFGH"[len({p[:2] for p in panels[: index + 1]}) - 1]
+            )
     handles = [
         Line2D([], [], color=c, marker=m, markersize=4.0 if w else 7.0, linewidth=w, linestyle=line(n), label=n)
         for n, (c, m, w) in STYLES.items()

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Growth without inertia: the displacement of a step at which every cell is in balance.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "root_sph/dynamics/preconditioner.hpp"
+
+namespace rootsoil {
+
+/// How an equilibrium was found, or was not.
+struct Balance {
+  bool found = false;
+  int iterations = 0;
+  double imbalance = 0.0;      ///< rms over free cells of |f|/(p x its face); the tissue's stress for p if more
+  std::size_t worst_cell = 0;  ///< the one with the largest
+  double worst_imbalance = 0.0;
+};
+
+/// Solves f(d) = 0 by a quasi-Newton iteration: d += M^-1 f, M from the stiffness at the predictor, improved by
+/// Anderson's mixing of the last iterations in the norm of M^-1 (f is not quite the gradient of an energy: the pair
+/// resistance's force is not the adjoint of its slip, and friction is none).
+template <int Dim>
+class QuasiStatic {
+ public:
+  using Displacements = std::vector<Vec<Dim>>;
+  /// Sets tissue.force to the forces after these displacements.
+  using Evaluate = std::function<void(const Displacements&)>;
+  /// Stiffness of contacts as they are now, a block for each cell, N/mm; empty where nothing can touch.
+  using ContactStiffness = std::function<std::vector<Mat<Dim>>()>;
+
+  /// \param displacement first guess in, solution out; zero on held cells
+  /// \param tolerance on Balance::imbalance
+  Balance solve(const Tissue<Dim>& tissue, const PairTerms<Dim>& terms, double dt_h, double tolerance,
+                const Evaluate& evaluate, const ContactStiffness& contact, Displacements& displacement);
+
+ private:
+  Balance attempt(Preconditioner<Dim>& preconditioner, const Tissue<Dim>& tissue, const PairTerms<Dim>& terms,
+                  const FreeCells& free, double dt_h, double tolerance, const Evaluate& evaluate,
+                  const ContactStiffness& contact, Displacements& displacement) const;
+
+  std::unique_ptr<Preconditioner<Dim>> band_, layers_;  ///< kept for their memory
+};
+
+extern template class QuasiStatic<2>;
+extern template class QuasiStatic<3>;
+
+}  // namespace rootsoil

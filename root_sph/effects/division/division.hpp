@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Cells divide across their longest axis when it passes a threshold that varies along the root (4.2, Eq. 6).
+#pragma once
+
+#include "root_sph/effects/effect_spec.hpp"
+
+namespace rootsoil {
+
+struct DivisionSection {
+  double l0_mm = 0.0, c_d = 1.0, s_d_per_mm2 = 0.0, x_d_mm = 0.0;
+  std::optional<double> constant_beyond_mm;
+};
+
+/// Division threshold of the longest axis, l(s) = l0 (c_d + s_d (s - x_d)^2), mm; constant beyond a distance.
+/// Eq. 6, third.
+double division_threshold_mm(const DivisionSection& division, double s_mm);
+
+/// Moves the cells of a file along the root, by a little, so that gaps and overlaps between them even out. Spacing and
+/// cell length drift apart by a per cent where the growth rate varies, and a gap doubles relative to its cells in every
+/// generation until the file is torn (docs/decisions/0007). Pair by pair and opposite, so the centroid of a file stays.
+/// Uses the pairs of the window; runs at its end.
+template <int Dim>
+void even_out_spacing(Solver<Dim>& solver);
+
+/// Tells growth, however fast, from cells that divide without ever getting below their threshold.
+/// \param shorter how many times shorter cells are now than at the start: mean volume^(1/Dim)
+/// \return what is wrong; empty: nothing
+std::string runaway_division(std::size_t cells, double shorter);
+
+template <int Dim>
+class DivisionEffect final : public Effect<Dim> {
+ public:
+  DivisionEffect(Solver<Dim>& solver, const DivisionSection& division);
+
+ private:
+  void divide(Tissue<Dim>& tissue) const;
+  void refuse_runaway(const Tissue<Dim>& tissue, const std::vector<char>& divides) const;
+  double threshold_mm(const Tissue<Dim>& tissue, std::size_t cell) const {
+    return division_threshold_mm(division_, tissue.cells.distance_to_tip[cell]);
+  }
+
+  DivisionSection division_;
+  double mean_volume_;  ///< of a cell at the start
+};
+
+EffectSpec division_effect();
+
+/// How many cells one becomes that divides until no axis is longer than the threshold.
+template <int Dim>
+double cells_when_divided(const Mat<Dim>& shape, double threshold_mm);
+
+}  // namespace rootsoil
