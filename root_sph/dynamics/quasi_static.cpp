@@ -11,7 +11,7 @@ namespace rootsoil {
 namespace {
 
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
-constexpr int mixed_iterations = 12;
+constexpr int mixed_iterations = 30;
 constexpr double most_strain = 0.2;  // of a pair's distance in one iteration
 // Multiplications of a band's factor, where layers could serve: what costs no more than they do, and what is worth
 // while where they fail.
@@ -74,6 +74,24 @@ class Mixing {
   Eigen::MatrixXd gram_ = Eigen::MatrixXd::Zero(mixed_iterations, mixed_iterations);
   Eigen::VectorXd x_, r_, z_;  ///< of the latest iteration; empty: there was none
 };
+
+/// By how much a step changes the distance vector of a pair over its length, the most of all.
+template <int Dim>
+double largest_pair_strain(const Tissue<Dim>& tissue, const FreeCells& free, const Eigen::VectorXd& step) {
+  const auto& cells = tissue.cells;
+  const auto moved = [&](std::int32_t cell) -> Vec<Dim> {
+    const std::int32_t p = free.place[cell];
+    return p < 0 ? Vec<Dim>(Vec<Dim>::Zero()) : Vec<Dim>(step.segment<Dim>(Eigen::Index{p} * Dim));
+  };
+  double strain2 = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : strain2)
+  for (std::size_t k = 0; k < tissue.pairs.pairs.size(); ++k) {
+    const auto [i, j] = tissue.pairs.pairs[k];
+    strain2 =
+        std::max(strain2, (moved(j) - moved(i)).squaredNorm() / (cells.position[j] - cells.position[i]).squaredNorm());
+  }
+  return std::sqrt(strain2);
+}
 
 template <int Dim>
 bool same_contacts(const std::vector<Mat<Dim>>& a, const std::vector<Mat<Dim>>& b) {
@@ -177,16 +195,8 @@ Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, const Tis
     preconditioner.apply(r, z);
     mixing.improve(x, r, z);
     step = z;
-    double strain2 = 0.0;
-    for (const auto& [i, j] : tissue.pairs.pairs) {
-      const auto moved = [&](std::int32_t cell) -> Vec<Dim> {
-        const std::int32_t p = free.place[cell];
-        return p < 0 ? Vec<Dim>(Vec<Dim>::Zero()) : Vec<Dim>(step.segment<Dim>(Eigen::Index{p} * Dim));
-      };
-      strain2 = std::max(strain2,
-                         (moved(j) - moved(i)).squaredNorm() / (cells.position[j] - cells.position[i]).squaredNorm());
-    }
-    if (strain2 > most_strain * most_strain) step *= most_strain / std::sqrt(strain2);
+    const double strain = largest_pair_strain<Dim>(tissue, free, step);
+    if (strain > most_strain) step *= most_strain / strain;
     x += step;
   }
 }
