@@ -11,6 +11,7 @@ namespace rootsoil {
 namespace {
 
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
+constexpr int most_balanced = 8;  // iterations within the force's tolerance, where friction keeps cells moving
 constexpr int mixed_iterations = 30;
 constexpr double most_strain = 0.2;  // of a pair's distance in one iteration
 // Multiplications of a band's factor, where layers could serve: what costs no more than they do, and what is worth
@@ -30,7 +31,8 @@ double stress_scale(const Tissue<Dim>& tissue) {
   return std::max({std::abs(tissue.pressure_MPa), rms, 1e-9 * tissue.material.E_axial_MPa});
 }
 
-/// Anderson's mixing: of the iterations so far, the combination whose residual is smallest in the norm of M^-1.
+/// Anderson's mixing: of the iterations so far, the combination whose residual is smallest in the norm of M^-1. M is
+/// symmetric: differences of residuals appear in products with M^-1 only, and need not be kept.
 class Mixing {
  public:
   void forget() {
@@ -39,25 +41,25 @@ class Mixing {
   }
   /// \param x, r, z unknowns, residual, M^-1 r of the latest iteration; on return z is the step to take from x
   void improve(const Eigen::VectorXd& x, const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    if (x_.size() == x.size()) remember({x - x_, r - r_, z - z_});
+    if (x_.size() == x.size()) remember(r - r_, {x - x_ + z - z_, z - z_});
     x_ = x;
     r_ = r;
     z_ = z;
     const auto m = static_cast<Eigen::Index>(steps_.size());
     if (m == 0) return;
     Eigen::VectorXd against(m);
-    for (Eigen::Index a = 0; a < m; ++a) against[a] = steps_[a].r.dot(z);
+    for (Eigen::Index a = 0; a < m; ++a) against[a] = steps_[a].z.dot(r);
     const Eigen::VectorXd share = gram_.topLeftCorner(m, m).completeOrthogonalDecomposition().solve(against);
-    for (Eigen::Index a = 0; a < m; ++a) z -= share[a] * (steps_[a].x + steps_[a].z);
+    for (Eigen::Index a = 0; a < m; ++a) z -= share[a] * steps_[a].after;
   }
 
  private:
   struct Step {
-    Eigen::VectorXd x, r, z;  // differences of two iterations
+    Eigen::VectorXd after, z;  // differences of two iterations, of x + z and of z = M^-1 r
   };
 
-  /// And its products with the others: dr . M^-1 dr, made symmetric.
-  void remember(Step step) {
+  /// And its products with the others: dr . M^-1 dr.
+  void remember(const Eigen::VectorXd& dr, Step step) {
     constexpr Eigen::Index most = mixed_iterations;
     if (std::ssize(steps_) == most) {
       steps_.pop_front();
@@ -65,9 +67,7 @@ class Mixing {
     }
     steps_.push_back(std::move(step));
     const Eigen::Index last = std::ssize(steps_) - 1;
-    for (Eigen::Index a = 0; a <= last; ++a) {
-      gram_(a, last) = gram_(last, a) = 0.5 * (steps_[a].r.dot(steps_[last].z) + steps_[last].r.dot(steps_[a].z));
-    }
+    for (Eigen::Index a = 0; a <= last; ++a) gram_(a, last) = gram_(last, a) = dr.dot(steps_[a].z);
   }
 
   std::deque<Step> steps_;
@@ -91,6 +91,16 @@ double largest_pair_strain(const Tissue<Dim>& tissue, const FreeCells& free, con
         std::max(strain2, (moved(j) - moved(i)).squaredNorm() / (cells.position[j] - cells.position[i]).squaredNorm());
   }
   return std::sqrt(strain2);
+}
+
+/// How far cells move, over their size, the most of all.
+template <int Dim>
+double largest_move(const Eigen::VectorXd& move, const Eigen::VectorXd& sizes) {
+  double largest = 0.0;
+  for (Eigen::Index p = 0; p < sizes.size(); ++p) {
+    largest = std::max(largest, move.segment<Dim>(p * Dim).norm() / sizes[p]);
+  }
+  return largest;
 }
 
 template <int Dim>
@@ -136,10 +146,11 @@ Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, const Tis
   const auto& cells = tissue.cells;
   const auto places = static_cast<Eigen::Index>(free.cell.size());
   Balance balance;
-  Eigen::VectorXd x(places * Dim), r(places * Dim), z(places * Dim), faces(places);
+  Eigen::VectorXd x(places * Dim), r(places * Dim), z(places * Dim), sizes(places), faces(places);
   for (Eigen::Index p = 0; p < places; ++p) {
     x.segment<Dim>(p * Dim) = displacement[free.cell[p]];
-    faces[p] = std::pow(cells.volume[free.cell[p]], (Dim - 1.0) / Dim);
+    sizes[p] = std::pow(cells.volume[free.cell[p]], 1.0 / Dim);
+    faces[p] = cells.volume[free.cell[p]] / sizes[p];
   }
   const auto evaluate_at = [&](const Eigen::VectorXd& at) {
     for (Eigen::Index p = 0; p < places; ++p) displacement[free.cell[p]] = at.segment<Dim>(p * Dim);
@@ -162,19 +173,22 @@ Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, const Tis
 
   Mixing mixing;
   std::vector<Mat<Dim>> touching;
-  int halvings = 0, rebuilds = 0;
+  int halvings = 0, rebuilds = 0, iterations_balanced = 0;
   double best = 0.0;
   Eigen::VectorXd best_x, step;
   for (;; ++balance.iterations) {
     evaluate_at(x);
     if (!std::isfinite(balance.imbalance)) return balance;
-    if (balance.imbalance <= tolerance) {
-      balance.found = true;
+    const bool balanced = balance.imbalance <= tolerance;
+    iterations_balanced = balanced ? iterations_balanced + 1 : 0;
+    balance.found = balanced && (balance.imbalance == 0.0 || iterations_balanced > most_balanced);
+    if (balance.found) return balance;
+    if (balance.iterations >= most_iterations) {
+      balance.found = balanced;
       return balance;
     }
-    if (balance.iterations >= most_iterations) return balance;
     // a step that made it worse is halved, from the best so far
-    if (balance.iterations > 0 && balance.imbalance > 2.0 * best && halvings < most_halvings) {
+    if (!balanced && balance.iterations > 0 && balance.imbalance > 2.0 * best && halvings < most_halvings) {
       ++halvings;
       step *= 0.5;
       x = best_x + step;
@@ -193,6 +207,8 @@ Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, const Tis
       mixing.forget();
     }
     preconditioner.apply(r, z);
+    balance.found = balanced && largest_move<Dim>(z, sizes) <= tolerance;
+    if (balance.found) return balance;
     mixing.improve(x, r, z);
     step = z;
     const double strain = largest_pair_strain<Dim>(tissue, free, step);
