@@ -11,9 +11,14 @@ namespace rootsoil {
 namespace {
 
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
-constexpr int most_balanced = 8;  // iterations within the force's tolerance, where friction keeps cells moving
+constexpr int most_after_balance = 8;  // iterations after the first within the force's tolerance
 constexpr int mixed_iterations = 30;
 constexpr double most_strain = 0.2;  // of a pair's distance in one iteration
+// Stability: stiffness of the softest mode over the tissue's own; displacements over a cell's size; thrust over p times
+// the held cells' faces.
+constexpr double least_stiffness = 1e-3, ample_stiffness = 0.5, small_move = 1e-3, first_move = 0.1;
+constexpr double least_thrust = 1e-4;
+constexpr int most_escapes = 3, most_doublings = 20, iterations_of_a_good_matrix = 5;
 // Multiplications of a band's factor, where layers could serve: what costs no more than they do, and what is worth
 // while where they fail.
 constexpr double little_work = 2e8, most_work = 2e11;
@@ -103,6 +108,16 @@ double largest_move(const Eigen::VectorXd& move, const Eigen::VectorXd& sizes) {
   return largest;
 }
 
+/// A direction across an axis, the same side all along a bent root.
+template <int Dim>
+Vec<Dim> across(const Vec<Dim>& axis) {
+  if constexpr (Dim == 2) {
+    return Vec<2>(-axis[1], axis[0]);
+  } else {
+    return axis.cross(Vec<3>(0.28, 0.64, 0.72)).normalized();  // no direction that a scene would have
+  }
+}
+
 template <int Dim>
 bool same_contacts(const std::vector<Mat<Dim>>& a, const std::vector<Mat<Dim>>& b) {
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
@@ -111,109 +126,245 @@ bool same_contacts(const std::vector<Mat<Dim>>& a, const std::vector<Mat<Dim>>& 
   return a.size() == b.size();
 }
 
+/// One search for a balance, with one preconditioner.
+template <int Dim>
+class Search {
+ public:
+  using Displacements = typename QuasiStatic<Dim>::Displacements;
+
+  Search(const typename QuasiStatic<Dim>::Problem& problem, const FreeCells& free, Preconditioner<Dim>& preconditioner,
+         Displacements& displacement)
+      : problem_(problem),
+        tissue_(problem.tissue),
+        free_(free),
+        preconditioner_(preconditioner),
+        displacement_(displacement),
+        places_(std::ssize(free.cell)),
+        x_(places_ * Dim),
+        r_(places_ * Dim),
+        z_(places_ * Dim),
+        sizes_(places_),
+        faces_(places_) {
+    for (Eigen::Index p = 0; p < places_; ++p) {
+      x_.segment<Dim>(p * Dim) = displacement[free.cell[p]];
+      sizes_[p] = std::pow(tissue_.cells.volume[free.cell[p]], 1.0 / Dim);
+      faces_[p] = tissue_.cells.volume[free.cell[p]] / sizes_[p];
+    }
+  }
+
+  /// A balance that a small push would end is left for the one that the root falls into.
+  Balance run() {
+    for (int k = 0;; ++k) {
+      iterate();
+      if (!balance_.found || !pressed()) break;
+      if (balance_.iterations > iterations_of_a_good_matrix && !build()) break;
+      const Mode mode = softest_mode();
+      balance_.stable = mode.stiffness > least_stiffness;
+      if (balance_.stable || k == most_escapes) break;
+      leave(mode);
+    }
+    put(x_);
+    return balance_;
+  }
+
+ private:
+  /// Displacements v of the free cells, the forces M v, and what stiffness is left: v.K v/v.M v.
+  struct Mode {
+    Eigen::VectorXd v, load;
+    double stiffness = 1.0;
+  };
+
+  void put(const Eigen::VectorXd& at) {
+    for (Eigen::Index p = 0; p < places_; ++p) displacement_[free_.cell[p]] = at.segment<Dim>(p * Dim);
+  }
+
+  /// r: the forces on the free cells; without their part along a mode that is held.
+  void evaluate(const Eigen::VectorXd& at) {
+    put(at);
+    problem_.evaluate(displacement_);
+    for (Eigen::Index p = 0; p < places_; ++p) r_.segment<Dim>(p * Dim) = tissue_.force[free_.cell[p]];
+    if (!held_) return;
+    pull_ = held_->v.dot(r_) / held_->v.dot(held_->load);
+    r_ -= pull_ * held_->load;
+  }
+
+  /// z = M^-1 r; nothing along a mode that is held.
+  void precondition() {
+    preconditioner_.apply(r_, z_);
+    if (held_) z_ -= held_->load.dot(z_) / held_->v.dot(held_->load) * held_->v;
+  }
+
+  void judge() {
+    double square = 0.0;
+    balance_.worst_imbalance = -1.0;
+    const double scale = stress_scale<Dim>(tissue_);
+    for (Eigen::Index p = 0; p < places_; ++p) {
+      const double relative = r_.segment<Dim>(p * Dim).norm() / (scale * faces_[p]);
+      square += relative * relative;
+      if (!(relative <= balance_.worst_imbalance)) {
+        balance_.worst_imbalance = relative;
+        balance_.worst_cell = static_cast<std::size_t>(free_.cell[p]);
+      }
+    }
+    balance_.imbalance = places_ > 0 ? std::sqrt(square / static_cast<double>(places_)) : 0.0;
+  }
+
+  bool build() {
+    touching_ = problem_.contact();
+    return preconditioner_.build(tissue_, problem_.terms, free_, touching_, problem_.dt_h);
+  }
+
+  /// Quasi-Newton iterations, mixed, until forces and what they still want to move are small. What moves for long under
+  /// forces that are small already (a mode that has hardly any stiffness, cells that slide) ends where it moves least.
+  void iterate() {
+    Mixing mixing;
+    balance_.found = false;
+    int halvings = 0, rebuilds = 0, after_balance = 0;
+    double best = 0.0, least_move = 0.0;
+    Eigen::VectorXd best_x, stillest_x, step;
+    for (int k = 0;; ++k, ++balance_.iterations) {
+      evaluate(x_);
+      judge();
+      if (!std::isfinite(balance_.imbalance)) return;
+      const bool balanced = balance_.imbalance <= problem_.tolerance;
+      balance_.found = balance_.imbalance == 0.0;
+      if (balance_.found) return;
+      if (k >= most_iterations || after_balance > most_after_balance) break;
+      // a step that made it worse is halved, from the best so far
+      if (!balanced && k > 0 && balance_.imbalance > 2.0 * best && halvings < most_halvings) {
+        ++halvings;
+        step *= 0.5;
+        x_ = best_x + step;
+        continue;
+      }
+      if (k == 0 || balance_.imbalance < best) {
+        best = balance_.imbalance;
+        best_x = x_;
+        halvings = 0;
+      }
+      if (k == 0 || (rebuilds < most_rebuilds && !same_contacts<Dim>(problem_.contact(), touching_))) {
+        if (!build()) return;
+        ++rebuilds;
+        mixing.forget();
+      }
+      precondition();
+      if (balanced) {
+        const double move = largest_move<Dim>(z_, sizes_);
+        balance_.found = move <= problem_.tolerance;
+        if (balance_.found) return;
+        if (stillest_x.size() == 0 || move < least_move) {
+          stillest_x = x_;
+          least_move = move;
+        }
+      }
+      if (stillest_x.size() > 0) ++after_balance;
+      mixing.improve(x_, r_, z_);
+      step = z_;
+      x_ += limited(step);
+    }
+    if (stillest_x.size() == 0) return;
+    x_ = stillest_x;
+    evaluate(x_);
+    judge();
+    balance_.found = true;
+  }
+
+  const Eigen::VectorXd& limited(Eigen::VectorXd& step) const {
+    const double strain = largest_pair_strain<Dim>(tissue_, free_, step);
+    if (strain > most_strain) step *= most_strain / strain;
+    return step;
+  }
+
+  /// Whether the held base is pressed: nothing else bends a straight root.
+  bool pressed() const {
+    const auto& cells = tissue_.cells;
+    double thrust = 0.0, section = 0.0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (!cells.clamped[i]) continue;
+      thrust -= tissue_.force[i].dot(cells.frame[i].col(0));
+      section += std::pow(cells.volume[i], (Dim - 1.0) / Dim);
+    }
+    return thrust > least_thrust * stress_scale<Dim>(tissue_) * section;
+  }
+
+  /// What a load from the side does, and two steps of the power method on 1 - M^-1 K from there, whose largest
+  /// eigenvalue belongs to the smallest of M^-1 K; for a column that is 1 - P/P_Euler.
+  Mode softest_mode() {
+    Mode mode{.v = {}, .load = Eigen::VectorXd(places_ * Dim)};
+    for (Eigen::Index p = 0; p < places_; ++p) {
+      mode.load.template segment<Dim>(p * Dim) = faces_[p] * across<Dim>(tissue_.cells.frame[free_.cell[p]].col(0));
+    }
+    preconditioner_.apply(mode.load, mode.v);
+    const Eigen::VectorXd here = r_;
+    for (int k = 0;; ++k) {
+      const double small = small_move / largest_move<Dim>(mode.v, sizes_);
+      evaluate(x_ + small * mode.v);
+      const Eigen::VectorXd resisted = (here - r_) / small;  // K v
+      mode.stiffness = mode.v.dot(resisted) / mode.v.dot(mode.load);
+      if (mode.stiffness > ample_stiffness || k == 2) break;
+      preconditioner_.apply(resisted, z_);
+      mode.v -= z_;
+      mode.load -= resisted;
+    }
+    r_ = here;
+    return mode;
+  }
+
+  /// Away from a balance that is none for long: the mode's amplitude is held at twice the last one, and all else in
+  /// balance, until its force points back; a balance lies between the last two. To the side from which the step came.
+  void leave(const Mode& mode) {
+    const double side = mode.load.dot(x_) > 0.0 ? -1.0 : 1.0;
+    double way = side * first_move / largest_move<Dim>(mode.v, sizes_);
+    held_ = &mode;
+    for (int k = 0; k < most_doublings; ++k, way *= 2.0) {
+      const Eigen::VectorXd before = x_;
+      const double pull_before = pull_;
+      x_ += way * mode.v;
+      iterate();
+      if (!balance_.found) break;
+      if (side * pull_ <= 0.0) {
+        if (k > 0) x_ = before + pull_before / (pull_before - pull_) * (x_ - before);
+        break;
+      }
+    }
+    held_ = nullptr;
+  }
+
+  const typename QuasiStatic<Dim>::Problem& problem_;
+  const Tissue<Dim>& tissue_;
+  const FreeCells& free_;
+  Preconditioner<Dim>& preconditioner_;
+  Displacements& displacement_;
+  Eigen::Index places_;
+  Eigen::VectorXd x_, r_, z_, sizes_, faces_;
+  std::vector<Mat<Dim>> touching_;
+  const Mode* held_ = nullptr;
+  double pull_ = 0.0;  ///< amplitude that the held mode's force would add
+  Balance balance_;
+};
+
 }  // namespace
 
 template <int Dim>
-Balance QuasiStatic<Dim>::solve(const Tissue<Dim>& tissue, const PairTerms<Dim>& terms, double dt_h, double tolerance,
-                                const Evaluate& evaluate, const ContactStiffness& contact,
-                                Displacements& displacement) {
+Balance QuasiStatic<Dim>::solve(const Problem& problem, Displacements& displacement) {
   if (!band_) {
     band_ = make_band_preconditioner<Dim>();
     layers_ = make_layer_preconditioner<Dim>();
   }
-  const FreeCells free = order_free_cells<Dim>(tissue.cells);
-  const auto attempt_with = [&](Preconditioner<Dim>& preconditioner) {
-    return attempt(preconditioner, tissue, terms, free, dt_h, tolerance, evaluate, contact, displacement);
+  const FreeCells free = order_free_cells<Dim>(problem.tissue.cells);
+  const auto search_with = [&](Preconditioner<Dim>& preconditioner) {
+    return Search<Dim>(problem, free, preconditioner, displacement).run();
   };
   if constexpr (Dim == 2) {
-    return attempt_with(*band_);
+    return search_with(*band_);
   } else {
-    const double work = band_work<Dim>(tissue.pairs, free);
-    if (work < little_work) return attempt_with(*band_);
+    const double work = band_work<Dim>(problem.tissue.pairs, free);
+    if (work < little_work) return search_with(*band_);
     const Displacements guess = displacement;
-    const Balance balance = attempt_with(*layers_);
+    const Balance balance = search_with(*layers_);
     if (balance.found || work >= most_work) return balance;
     displacement = guess;
-    return attempt_with(*band_);
-  }
-}
-
-template <int Dim>
-Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, const Tissue<Dim>& tissue,
-                                  const PairTerms<Dim>& terms, const FreeCells& free, double dt_h, double tolerance,
-                                  const Evaluate& evaluate, const ContactStiffness& contact,
-                                  Displacements& displacement) const {
-  const auto& cells = tissue.cells;
-  const auto places = static_cast<Eigen::Index>(free.cell.size());
-  Balance balance;
-  Eigen::VectorXd x(places * Dim), r(places * Dim), z(places * Dim), sizes(places), faces(places);
-  for (Eigen::Index p = 0; p < places; ++p) {
-    x.segment<Dim>(p * Dim) = displacement[free.cell[p]];
-    sizes[p] = std::pow(cells.volume[free.cell[p]], 1.0 / Dim);
-    faces[p] = cells.volume[free.cell[p]] / sizes[p];
-  }
-  const auto evaluate_at = [&](const Eigen::VectorXd& at) {
-    for (Eigen::Index p = 0; p < places; ++p) displacement[free.cell[p]] = at.segment<Dim>(p * Dim);
-    evaluate(displacement);
-    double square = 0.0;
-    balance.worst_imbalance = -1.0;
-    const double scale = stress_scale<Dim>(tissue);
-    for (Eigen::Index p = 0; p < places; ++p) {
-      const Vec<Dim>& f = tissue.force[free.cell[p]];
-      r.segment<Dim>(p * Dim) = f;
-      const double relative = f.norm() / (scale * faces[p]);
-      square += relative * relative;
-      if (!(relative <= balance.worst_imbalance)) {
-        balance.worst_imbalance = relative;
-        balance.worst_cell = static_cast<std::size_t>(free.cell[p]);
-      }
-    }
-    balance.imbalance = places > 0 ? std::sqrt(square / static_cast<double>(places)) : 0.0;
-  };
-
-  Mixing mixing;
-  std::vector<Mat<Dim>> touching;
-  int halvings = 0, rebuilds = 0, iterations_balanced = 0;
-  double best = 0.0;
-  Eigen::VectorXd best_x, step;
-  for (;; ++balance.iterations) {
-    evaluate_at(x);
-    if (!std::isfinite(balance.imbalance)) return balance;
-    const bool balanced = balance.imbalance <= tolerance;
-    iterations_balanced = balanced ? iterations_balanced + 1 : 0;
-    balance.found = balanced && (balance.imbalance == 0.0 || iterations_balanced > most_balanced);
-    if (balance.found) return balance;
-    if (balance.iterations >= most_iterations) {
-      balance.found = balanced;
-      return balance;
-    }
-    // a step that made it worse is halved, from the best so far
-    if (!balanced && balance.iterations > 0 && balance.imbalance > 2.0 * best && halvings < most_halvings) {
-      ++halvings;
-      step *= 0.5;
-      x = best_x + step;
-      continue;
-    }
-    if (balance.iterations == 0 || balance.imbalance < best) {
-      best = balance.imbalance;
-      best_x = x;
-      halvings = 0;
-    }
-    std::vector<Mat<Dim>> now = contact();
-    if (balance.iterations == 0 || (rebuilds < most_rebuilds && !same_contacts<Dim>(now, touching))) {
-      touching = std::move(now);
-      if (!preconditioner.build(tissue, terms, free, touching, dt_h)) return balance;
-      ++rebuilds;
-      mixing.forget();
-    }
-    preconditioner.apply(r, z);
-    balance.found = balanced && largest_move<Dim>(z, sizes) <= tolerance;
-    if (balance.found) return balance;
-    mixing.improve(x, r, z);
-    step = z;
-    const double strain = largest_pair_strain<Dim>(tissue, free, step);
-    if (strain > most_strain) step *= most_strain / strain;
-    x += step;
+    return search_with(*band_);
   }
 }
 

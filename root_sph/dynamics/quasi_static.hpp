@@ -17,6 +17,7 @@ struct Balance {
   double imbalance = 0.0;      ///< rms over free cells of |f|/(p x its face); the tissue's stress for p if more
   std::size_t worst_cell = 0;  ///< the one with the largest
   double worst_imbalance = 0.0;
+  bool stable = true;  ///< a small push does not end it
 };
 
 /// Solves f(d) = 0 by a quasi-Newton iteration: d += M^-1 f, M from the stiffness at the predictor, improved by
@@ -31,16 +32,19 @@ class QuasiStatic {
   /// Stiffness of contacts as they are now, a block for each cell, N/mm; empty where nothing can touch.
   using ContactStiffness = std::function<std::vector<Mat<Dim>>()>;
 
+  struct Problem {
+    const Tissue<Dim>& tissue;
+    const PairTerms<Dim>& terms;
+    double dt_h;
+    double tolerance;  ///< on Balance::imbalance, and on how far cells still want to move over their size
+    Evaluate evaluate;
+    ContactStiffness contact;
+  };
+
   /// \param displacement first guess in, solution out; zero on held cells
-  /// \param tolerance on Balance::imbalance
-  Balance solve(const Tissue<Dim>& tissue, const PairTerms<Dim>& terms, double dt_h, double tolerance,
-                const Evaluate& evaluate, const ContactStiffness& contact, Displacements& displacement);
+  Balance solve(const Problem& problem, Displacements& displacement);
 
  private:
-  Balance attempt(Preconditioner<Dim>& preconditioner, const Tissue<Dim>& tissue, const PairTerms<Dim>& terms,
-                  const FreeCells& free, double dt_h, double tolerance, const Evaluate& evaluate,
-                  const ContactStiffness& contact, Displacements& displacement) const;
-
   std::unique_ptr<Preconditioner<Dim>> band_, layers_;  ///< kept for their memory
 };
 

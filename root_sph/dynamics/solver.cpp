@@ -261,7 +261,7 @@ bool Solver<Dim>::find_balance() {
     return stiffness;
   };
   clock_.measure("balance", [&] {
-    balance_ = quasi_static_.solve(tissue_, terms_, dt, options_.force_tolerance, evaluate, contact, displacement);
+    balance_ = quasi_static_.solve({tissue_, terms_, dt, options_.force_tolerance, evaluate, contact}, displacement);
   });
   if (!balance_.found) {
     std::copy(start.begin(), start.end(), cells.position.values().begin());
