@@ -347,6 +347,8 @@ void Run<Dim>::write_summary(const std::string& status) const {
       {"time_h", tissue.time_h},
       {"stepper", name_of(scene_.numerics.stepper)},
       {"steps", solver.steps()},
+      {"balance_iterations", solver.effort().balance_iterations},
+      {"force_evaluations", solver.effort().force_evaluations},
       {"cells_start", cells_start_},
       {"cells_end", tissue.cells.total()},
       {"divisions", divisions()},
