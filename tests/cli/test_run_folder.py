@@ -26,6 +26,7 @@ SUMMARY = {
     "wall_s_by_effect", "pairs", "pairs_per_s", "peak_memory_mb", "threads", "dt_h", "inertia_error_max",
     "momentum_residual", "active_effects", "fields", "inertia_error", "discretisation_error", "preset_inertia_error",
     "preset_ms_per_cell_hour", "stated_accuracy", "balance_iterations", "force_evaluations",
+    "cpu_s", "cpu_start_s",
 }  # fmt: skip
 # name: numbers a cell, unit
 FIELDS = {
@@ -89,6 +90,7 @@ def test_summary(full_run: Path):
     assert found["cells_across"] == 6 and 0.01 < found["discretisation_error"] < 0.012  # .0116 measured
     assert found["momentum_residual"] < 1e-12
     assert {"pressure", "anisotropy", "growth", "division", "obstacle"} <= set(found["active_effects"])
+    assert 0.0 < found["cpu_start_s"] < found["cpu_s"]
     assert found["threads"] == 1 and found["wall_s"] > 0 and found["pairs"] > 0 and found["peak_memory_mb"] > 0
     assert all(seconds >= 0 for seconds in found["wall_s_by_effect"].values())
     assert checkpoint(full_run)["attribute time_h"] == 0.4
@@ -102,6 +104,13 @@ def test_what_balance_takes_is_counted(program: Program):
     assert found["dt_h"]["min"] == found["dt_h"]["max"], "a step was cut: its evaluations are more"
     assert found["balance_iterations"] > 0
     assert found["force_evaluations"] == found["balance_iterations"] + 2 * found["steps"]
+
+
+def test_memory_is_that_of_the_program(program: Program):
+    """And not of whoever starts it."""
+    much = b"x" * (600 * 2**20)
+    assert program("run", program.scene(SMALL), "--out", "out").status == 0
+    assert 1.0 < summary(program.folder / "out")["peak_memory_mb"] < len(much) / 2**21
 
 
 def test_frames(full_run: Path):

@@ -20,7 +20,7 @@ def set_options(settings: Sequence[str]) -> list[str]:
 
 def examine(program: Path, scene: Path, settings: Sequence[str] = ()) -> dict:
     """What `rootsoil check --json` says."""
-    command = [program, "check", scene, "--json", *set_options(settings)]
+    command = [str(program), "check", str(scene), "--json", *set_options(settings)]
     return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
 
 
@@ -37,7 +37,8 @@ def session(
     this session, without a picture. CalledProcessError: it failed."""
     if not resume:
         shutil.rmtree(folder, ignore_errors=True)
-    command = [program, "run", scene, "--out", folder, "--threads", str(threads), "--quiet", "--until", repr(until_h)]
+    command = [str(program), "run", str(scene), "--out", str(folder), "--threads", str(threads)]
+    command += ["--quiet", "--until", repr(until_h)]
     command += ["--resume"] if resume else []
     subprocess.run(
         [*command, *set_options([*settings, "output.picture=false"])],
@@ -50,11 +51,16 @@ def session(
     return read_summary(folder)
 
 
+def stepping_s(summary: dict) -> float:
+    """Processor time of a session (s) but for starting, which older programs do not tell apart."""
+    return summary["cpu_s"] - summary.get("cpu_start_s", 0.0)
+
+
 def hourly_cost(program: Path, scene: Path, hours: Sequence[float], folder: Path) -> list[tuple[float, float, float]]:
     """(from h, to h, processor time per simulated hour in s) of stretches of one run that is paused in between."""
     rows, before = [], 0.0
     for until in hours:
-        spent = session(program, scene, folder, until, resume=before > 0.0)["cpu_s"]
+        spent = stepping_s(session(program, scene, folder, until, resume=before > 0.0))
         rows.append((before, until, spent / (until - before)))
         before = until
     return rows
