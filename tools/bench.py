@@ -144,31 +144,30 @@ class Bench:
 
     def scaling(self, most_cells: float) -> list[Row]:
         """The same root with more and more cells across."""
-        rows = []
+        points: list[dict[str, float]] = []
+        scene = self.root(self.plan.across[0])
+        step_h = examine(self.program, scene)["step_h"]  # follows from the growth rate, whatever the cells
         for across in self.plan.across:
-            scene, found = self.root(across)
-            if found["cells"] > most_cells:
-                print(f"{across} across: {found['cells']} cells are left out (--most-cells)", flush=True)
+            cells = points[-1]["cells"] * (across / points[-1]["across"]) ** 3 if points else 0.0
+            if cells > most_cells:
+                print(f"{across} across: some {cells:.2g} cells are left out (--most-cells)", flush=True)
                 continue
-            repeat = self.repeat if found["cells"] < 1e5 else 1
-            steps = int(min(max(self.plan.steps, 5e4 / found["cells"]), 12))  # small roots are soon done with one
-            told = [self.steps_of(scene, found["step_h"], steps) for _ in range(repeat)]
+            told = [self.steps_of(across, step_h) for _ in range(self.repeat if cells < 1e5 else 1)]
             point = {q: float(np.median([t[q] for t in told])) for q in told[0] if not q.startswith("s in ")}
-            point |= {"across": across, "layers": found["lattice"]["layers"]}
+            points.append(point | {"across": float(across)})
             print(f"{across} across: {point['cells']:.0f} cells, {point['step_cpu_s']:.3g} s a step", flush=True)
-            rows += [Row("scaling", f"{across} across", q, float(v)) for q, v in point.items()]
-        return rows
+        return [Row("scaling", f"{point['across']:.0f} across", q, v) for point in points for q, v in point.items()]
 
     def roofline(self) -> list[Row]:
         """The machine, and the pair loops of one root under both steppers."""
         machine = roofline.measure_machine(self.plan.triad_mb)
         rows = [Row("machine", "one core", q, v) for q, v in asdict(machine).items()]
-        for stepper, steps in (("quasi_static", self.plan.steps), ("symplectic", self.plan.inertia_steps)):
-            settings = [f"numerics.stepper={stepper}"]
-            scene, found = self.root(self.plan.roofline_across, settings)
-            told = self.steps_of(scene, found["step_h"], steps, settings)
-            damped = any(field["name"] == "pair_damping" for field in found["fields"])
-            loops = {"forces": roofline.force_loop(3, damped), "velocity gradients": roofline.gradient_loop(3)}
+        for stepper, step_h, steps in (("quasi_static", 0.1, None), ("symplectic", 1e-4, self.plan.inertia_steps)):
+            told = self.steps_of(self.plan.roofline_across, step_h, steps, [f"numerics.stepper={stepper}"])
+            loops = {
+                "forces": roofline.force_loop(3, damped=stepper == "symplectic"),
+                "velocity gradients": roofline.gradient_loop(3),
+            }
             for name, loop in loops.items():
                 values = {
                     "cells": told["cells"],
@@ -183,8 +182,8 @@ class Bench:
         """Summary of a job until then."""
         return session(self.program, SCENARIOS / f"{job.scene}.toml", folder, until_h, settings, threads)
 
-    def root(self, across: int, settings: Sequence[str] = ()) -> tuple[Path, dict]:
-        """The scene of growth_3d with so many cells across, and what `check` says of it. It writes little."""
+    def root(self, across: int) -> Path:
+        """The scene of growth_3d with so many cells across. It writes little."""
         base = tomllib.loads((SCENARIOS / "growth_3d.toml").read_text(encoding="utf-8"))
         changes = {
             "root.cell_size_mm": 2.0 * base["root"]["radius_mm"] / across,
@@ -193,27 +192,33 @@ class Bench:
         }
         scene = self.work / f"growth_3d_{across}_across.toml"
         scene.write_text(scene_text(with_changes(base, changes)), encoding="utf-8")
-        return scene, examine(self.program, scene, settings)
+        return scene
 
-    def steps_of(self, scene: Path, step_h: float, steps: int, settings: Sequence[str] = ()) -> dict[str, float]:
-        """So many steps after the first: a run of all of them less a run of the first."""
-        folder = self.work / "steps"
-        one, all_of_them = (session(self.program, scene, folder, n * step_h, settings) for n in (1, 1 + steps))
+    def steps_of(
+        self, across: int, step_h: float, steps: int | None = None, settings: Sequence[str] = ()
+    ) -> dict[str, float]:
+        """Steps after the first: a run of all of them less a run of the first."""
+        scene, folder = self.root(across), self.work / "steps"
+        settings = [*settings, f"numerics.step_h={step_h!r}"]
+        one = session(self.program, scene, folder, step_h, settings)
+        steps = steps or int(min(max(self.plan.steps, 5e4 / one["cells_start"]), 12))  # small roots are soon done
+        more = session(self.program, scene, folder, (1 + steps) * step_h, settings)
 
         def spent(key: str) -> float:
             """NaN in a summary of an older program."""
-            return float(all_of_them.get(key, math.nan) - one.get(key, math.nan))
+            return float(more.get(key, math.nan) - one.get(key, math.nan))
 
-        clock, before = all_of_them["wall_s_by_effect"], one["wall_s_by_effect"]
+        clock, before = more["wall_s_by_effect"], one["wall_s_by_effect"]
         return {
-            "cells": float(all_of_them["cells_end"]),
-            "pairs": float(all_of_them["pairs"]),
+            "cells": float(more["cells_end"]),
+            "layers": float(more["lattice"]["layers"]),
+            "pairs": float(more["pairs"]),
             "steps": float(steps),
             "step_h": step_h,
             "step_cpu_s": spent("cpu_s") / steps,
             "step_iterations": spent("balance_iterations") / steps,
             "evaluations": spent("force_evaluations"),
-            "memory_mb": float(all_of_them["peak_memory_mb"]),
+            "memory_mb": float(more["peak_memory_mb"]),
             **{f"s in {name}": clock[name] - before[name] for name in ("forces", "velocity gradients")},
         }
 
@@ -287,7 +292,7 @@ def main() -> int:
             performance_page.write_rows(rows, file)
         if options.full:
             rows = [row for row in rows if row.part != "full"] + full_rows(options.full)
-            performance_page.write_rows(rows, file)
+        performance_page.write_rows(rows, file)
     except subprocess.CalledProcessError as error:
         print(
             f"bench: '{' '.join(map(str, error.cmd))}' ended with status {error.returncode}: {error.stderr}",

@@ -53,7 +53,9 @@ def test_sleep_pays(project: Path, tmp_path: Path):
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     with (tmp_path / "out" / "images" / "effects_sleep.csv").open() as file:
-        assert all(float(row["asleep_s_per_h"]) > 0.0 and float(row["awake_s_per_h"]) > 0.0 for row in csv.DictReader(file))
+        assert all(
+            float(row["asleep_s_per_h"]) > 0.0 and float(row["awake_s_per_h"]) > 0.0 for row in csv.DictReader(file)
+        )
     history = tool.Run(tmp_path / "work" / "asleep").history()
     assert history["cells_at_rest"][-1] > 0.4 * history["cells"][-1]  # .447
     lengths = [tool.Run(tmp_path / "work" / name).history()["length_mm"][-1] for name in ("awake", "asleep")]
