@@ -4,7 +4,7 @@
 
 Writes OUT/performance.csv, a row a number, OUT/images/performance_scaling.png and performance_roofline.png, and without
 --quick OUT/performance.md; what stands below that page's last mark is written by hand and kept. --only PART... measures
-these anew and takes the others from the file; --only alone measures nothing and draws. The million cells need 9 GB.
+these anew and takes the others from the file; --only alone measures nothing and draws. The million cells need 11 GB.
 """
 
 from __future__ import annotations

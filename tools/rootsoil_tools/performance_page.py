@@ -232,14 +232,14 @@ def draw_roofline(rows: Sequence[Row], path: Path) -> None:
     draw.use_style()
     figure = draw.new_figure(110.0, 72.0)
     axes = draw.place(figure, 14.0, 11.0, 92.0, 56.0)
-    left, right = 0.05, 20.0
+    left, right = 0.05, 30.0
     ridge = peak / bandwidth
     axes.plot([left, ridge, right], [left * bandwidth, peak, peak], color=draw.THEORY, linewidth=1.3)
     axes.axhline(machine["in_cache_GFLOP_s"], **draw.THEORY_LINE)
     note = {"ha": "right", "va": "bottom", "fontsize": 6.5}
     axes.text(right, peak, f"product of matrices {peak:.0f} GFLOP/s", **note)
     axes.text(right, machine["in_cache_GFLOP_s"], "x + a y by numpy, in cache", **note)
-    axes.text(left * 1.3, 2.2 * left * bandwidth, f"{bandwidth:.0f} GB/s", fontsize=6.5, va="bottom")
+    axes.text(left * 1.3, 3 * left * bandwidth, f"{bandwidth:.0f} GB/s", fontsize=6.5, va="bottom")
     for name, r in cases(rows, "roofline").items():
         axes.plot(
             r["operations"] / r["bytes"],
@@ -254,7 +254,7 @@ def draw_roofline(rows: Sequence[Row], path: Path) -> None:
         xscale="log",
         yscale="log",
         xlim=(left, right),
-        ylim=(0.5, 2 * peak),
+        ylim=(0.2, 2 * peak),
         xlabel="operations a byte",
         ylabel="GFLOP/s, one core",
     )
