@@ -172,8 +172,8 @@ def text_of_machine(rows: Sequence[Row]) -> str:
         return ""
     return (
         f"One core: {machine['triad_GB_s']:.0f} GB/s from and to memory (triad), "
-        f"{machine['matrix_product_GFLOP_s']:.0f} GFLOP/s in a product of matrices (fused multiply-add, all in cache), "
-        f"{machine['in_cache_GFLOP_s']:.1f} GFLOP/s in x + a y by numpy within the cache."
+        f"{machine['matrix_product_GFLOP_s']:.0f} GFLOP/s in a product of matrices (fused multiply-add,\n"
+        f"all in cache), {machine['in_cache_GFLOP_s']:.1f} GFLOP/s in x + a y by numpy within the cache."
     )
 
 
@@ -239,7 +239,7 @@ def draw_roofline(rows: Sequence[Row], path: Path) -> None:
     note = {"ha": "right", "va": "bottom", "fontsize": 6.5}
     axes.text(right, peak, f"product of matrices {peak:.0f} GFLOP/s", **note)
     axes.text(right, machine["in_cache_GFLOP_s"], "x + a y by numpy, in cache", **note)
-    axes.text(left * 1.3, 3 * left * bandwidth, f"{bandwidth:.0f} GB/s", fontsize=6.5, va="bottom")
+    axes.text(0.35 * ridge, 0.4 * peak, f"{bandwidth:.0f} GB/s", ha="right", va="bottom", fontsize=6.5)
     for name, r in cases(rows, "roofline").items():
         axes.plot(
             r["operations"] / r["bytes"],
