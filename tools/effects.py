@@ -12,8 +12,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import json
-import os
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -23,6 +21,8 @@ from pathlib import Path
 import numpy as np
 
 from rootsoil_tools import draw
+from rootsoil_tools.cost import examine, hourly_cost, session
+from rootsoil_tools.pages import kept_part
 from rootsoil_tools.runs import Run, RunError
 from rootsoil_tools.series import PROGRAM, PROJECT, without_sections
 
@@ -49,27 +49,6 @@ REMOVALS = (
 SLEEP_HOURS = (2.0, 10.0, 20.0, 30.0, 40.0, 50.0)
 
 
-def cpu_s(command: Sequence[str | Path]) -> float:
-    """Processor time of a command (s). CalledProcessError: it failed."""
-    process = subprocess.Popen(
-        [str(part) for part in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stderr is not None  # a pipe, as asked for above
-    said = process.stderr.read()
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode != 0:
-        raise subprocess.CalledProcessError(process.returncode, process.args, stderr=said)
-    return usage.ru_utime + usage.ru_stime
-
-
-def examine(program: Path, scene: Path, settings: Sequence[str] = ()) -> dict:
-    """What `rootsoil check --json` says."""
-    sets = [part for setting in settings for part in ("--set", setting)]
-    done = subprocess.run([program, "check", scene, "--json", *sets], capture_output=True, text=True, check=True)
-    return json.loads(done.stdout)
-
-
 # ---- scenes -----------------------------------------------------------------------------------------
 
 
@@ -94,15 +73,9 @@ def scene_table(program: Path) -> list[str]:
 
 def short_run_s(program: Path, scene: Path, settings: Sequence[str], steps: int, step_h: float, folder: Path) -> float:
     """Processor time of the first steps (s), less that of starting."""
-    sets = [part for setting in (*settings, f"numerics.step_h={step_h!r}") for part in ("--set", setting)]
-
-    def run(until_h: float) -> float:
-        subprocess.run(["rm", "-rf", str(folder)], check=True)
-        return cpu_s(
-            [program, "run", scene, "--out", folder, "--threads", "1", "--quiet", "--until", repr(until_h), *sets]
-        )
-
-    return run(steps * step_h) - run(step_h)
+    settings = [*settings, f"numerics.step_h={step_h!r}"]
+    whole, start = (session(program, scene, folder, n * step_h, settings)["cpu_s"] for n in (steps, 1))
+    return whole - start
 
 
 def shares(program: Path, job: Path, steps: int, pairs: int, work: Path) -> list[str]:
@@ -128,20 +101,6 @@ def shares(program: Path, job: Path, steps: int, pairs: int, work: Path) -> list
 
 
 # ---- sleep ------------------------------------------------------------------------------------------
-
-
-def hourly_cost(program: Path, scene: Path, hours: Sequence[float], folder: Path) -> list[tuple[float, float, float]]:
-    """(from h, to h, processor time per simulated hour in s) of stretches of one run that is paused in between."""
-    rows, before = [], 0.0
-    subprocess.run(["rm", "-rf", str(folder)], check=True)
-    for until in hours:
-        resume = ["--resume"] if before else []
-        spent = cpu_s(
-            [program, "run", scene, "--out", folder, "--threads", "1", "--quiet", "--until", repr(until), *resume]
-        )
-        rows.append((before, until, spent / (until - before)))
-        before = until
-    return rows
 
 
 def sleep_study(program: Path, job: Path, hours: Sequence[float], work: Path, out: Path) -> list[str]:
@@ -229,15 +188,6 @@ to the results is measured above and in tests/physics/sleep_test.cpp (places of 
 hour; force on a plate within 2 %; same bits after a pause).
 
 """
-KEPT_FROM = "<!-- From here on written by hand: tools/effects.py keeps it. -->\n"
-
-
-def kept_part(page: Path) -> str:
-    """What stands below the mark of a page that is there, with the mark; of any other, nothing."""
-    if not page.is_file():
-        return ""
-    _, mark, text = page.read_text(encoding="utf-8").partition(KEPT_FROM)
-    return mark + text
 
 
 def main() -> int:
@@ -282,7 +232,7 @@ def main() -> int:
     text = PAGE.format(
         scenes="\n".join(scenes), shares="\n".join(table).rstrip(), sleep="\n".join(sleep), steps=steps, pairs=pairs
     )
-    page.write_text(text + kept_part(page), encoding="utf-8")
+    page.write_text(text + kept_part(page, "effects"), encoding="utf-8")
     print(f"wrote {page}, {pictures / 'effects_sleep.png'} and {pictures / 'effects_sleep.csv'}")
     return 0
 

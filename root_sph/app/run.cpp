@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "root_sph/app/accuracy.hpp"
 #include "root_sph/app/commands.hpp"
@@ -35,7 +37,12 @@
 namespace rootsoil {
 namespace {
 
+/// Of this program. What getrusage says is at least what whoever started it had: Linux keeps that over exec.
 double peak_memory_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / 1024.0;
+  }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
@@ -117,6 +124,7 @@ class Run {
   double pair_steps_ = 0.0;
   std::int64_t steps_done_ = 0;  ///< in this session
   double wall_s_ = 0.0;
+  double cpu_start_s_ = 0.0;  ///< before the first step
   double checkpoint_h_ = 0.0;
   std::int64_t checkpoint_step_ = -1;
 };
@@ -347,6 +355,8 @@ void Run<Dim>::write_summary(const std::string& status) const {
       {"time_h", tissue.time_h},
       {"stepper", name_of(scene_.numerics.stepper)},
       {"steps", solver.steps()},
+      {"balance_iterations", solver.effort().balance_iterations},
+      {"force_evaluations", solver.effort().force_evaluations},
       {"cells_start", cells_start_},
       {"cells_end", tissue.cells.total()},
       {"divisions", divisions()},
@@ -354,6 +364,7 @@ void Run<Dim>::write_summary(const std::string& status) const {
       {"length_mm", solver.axis().length_mm()},
       {"wall_s", wall_s_},
       {"cpu_s", processor_time_s()},
+      {"cpu_start_s", cpu_start_s_},
       {"wall_s_by_effect", solver.clock().seconds()},
       {"pairs", tissue.pairs.pairs.size()},
       {"pairs_per_s", wall_s_ > 0.0 ? pair_steps_ / wall_s_ : 0.0},
@@ -406,6 +417,7 @@ ExitStatus Run<Dim>::go() {
 
   const Interruption interruption;
   Progress progress(options_.quiet, scene_.scene.duration_h);
+  cpu_start_s_ = processor_time_s();
   const auto start = std::chrono::steady_clock::now();
   const auto measure_wall = [&] {
     wall_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

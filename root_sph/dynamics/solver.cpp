@@ -145,6 +145,7 @@ void Solver<Dim>::choose_inertia() {
 template <int Dim>
 void Solver<Dim>::evaluate_forces(SlipAdvance advance) {
   clock_.measure("forces", [&] { add_forces_(tissue_, terms_, advance); });
+  ++effort_.force_evaluations;
   Hooks<Dim>::run(hooks_.forces, clock_, tissue_, advance);
 }
 
@@ -263,6 +264,7 @@ bool Solver<Dim>::find_balance() {
   clock_.measure("balance", [&] {
     balance_ = quasi_static_.solve({tissue_, terms_, dt, options_.force_tolerance, evaluate, contact}, displacement);
   });
+  effort_.balance_iterations += balance_.iterations;
   if (!balance_.found) {
     std::copy(start.begin(), start.end(), cells.position.values().begin());
     std::copy(velocity.begin(), velocity.end(), cells.velocity.values().begin());
@@ -367,7 +369,8 @@ void Solver<Dim>::save(std::map<std::string, std::vector<double>>& reals,
   reals["solver/axis"] = axis_.save();
   reals["solver/shortest_step_h"] = {shortest_step_h_};
   integers["solver/counters"] = {steps_, tissue_.next_cell_id,
-                                 static_cast<std::int64_t>(tissue_.cells.total() - tissue_.cells.size())};
+                                 static_cast<std::int64_t>(tissue_.cells.total() - tissue_.cells.size()),
+                                 effort_.balance_iterations, effort_.force_evaluations};
   if (!terms_.non_affine) return;
   std::vector<std::int64_t>& index = integers["solver/slip_pairs"];
   std::vector<double>& slip = reals["solver/slip_mm"];
@@ -388,10 +391,12 @@ void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& real
                           const std::map<std::string, std::vector<std::int64_t>>& integers) {
   axis_.restore(reals.at("solver/axis"));
   shortest_step_h_ = reals.at("solver/shortest_step_h").at(0);
-  steps_ = integers.at("solver/counters").at(0);
-  tissue_.next_cell_id = integers.at("solver/counters").at(1);
+  const auto& counters = integers.at("solver/counters");
+  steps_ = counters.at(0);
+  tissue_.next_cell_id = counters.at(1);
   tissue_.time_h = step_time_h(steps_, tissue_.step_h);
-  tissue_.cells.rest(static_cast<std::size_t>(integers.at("solver/counters").at(2)));
+  tissue_.cells.rest(static_cast<std::size_t>(counters.at(2)));
+  effort_ = {counters.at(3), counters.at(4)};
   const std::size_t n = tissue_.cells.size();
   for (std::size_t i = 0; i < n; ++i) tissue_.window_index[i] = static_cast<std::int64_t>(i);
   if (!terms_.non_affine) return;

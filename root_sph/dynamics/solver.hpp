@@ -15,6 +15,12 @@ namespace rootsoil {
 /// A function of the count alone, so that it does not depend on where a run was interrupted.
 double step_time_h(std::int64_t steps, double step_h);
 
+/// What a run's steps have taken so far.
+struct Effort {
+  std::int64_t balance_iterations = 0;  ///< without inertia; of a step that was cut, those before it as well
+  std::int64_t force_evaluations = 0;   ///< passes of the pair loop
+};
+
 template <int Dim>
 class Solver {
  public:
@@ -33,6 +39,7 @@ class Solver {
   const PhaseClock& clock() const { return clock_; }
   const GradientReport& gradient_report() const { return gradient_report_; }
   std::int64_t steps() const { return steps_; }
+  const Effort& effort() const { return effort_; }
 
   /// The column of accelerations that are prescribed, mm/h^2; the first who needs it declares it. Cleared in every
   /// window.
@@ -97,6 +104,7 @@ class Solver {
   double imbalance_ = 0.0, shortest_step_h_ = 0.0;
   double window_h_ = 0.0;
   std::int64_t steps_ = 0;
+  Effort effort_;
 };
 
 extern template class Solver<2>;

@@ -25,7 +25,8 @@ SUMMARY = {
     "status", "time_h", "steps", "cells_start", "cells_end", "divisions", "tip_mm", "length_mm", "wall_s",
     "wall_s_by_effect", "pairs", "pairs_per_s", "peak_memory_mb", "threads", "dt_h", "inertia_error_max",
     "momentum_residual", "active_effects", "fields", "inertia_error", "discretisation_error", "preset_inertia_error",
-    "preset_ms_per_cell_hour", "stated_accuracy",
+    "preset_ms_per_cell_hour", "stated_accuracy", "balance_iterations", "force_evaluations",
+    "cpu_s", "cpu_start_s",
 }  # fmt: skip
 # name: numbers a cell, unit
 FIELDS = {
@@ -79,6 +80,7 @@ def test_summary(full_run: Path):
     found, last = summary(full_run), history(full_run)[-1]
     assert SUMMARY <= found.keys()
     assert found["status"] == "done" and found["time_h"] == 0.4 and found["steps"] == 400
+    assert found["force_evaluations"] == 400 and found["balance_iterations"] == 0
     assert found["cells_end"] == last["cells"] == found["cells_start"] + found["divisions"]
     assert found["divisions"] == last["divisions"] and found["length_mm"] == last["length_mm"]
     assert found["tip_mm"] == [last["tip_x_mm"], last["tip_y_mm"], last["tip_z_mm"]]
@@ -88,9 +90,27 @@ def test_summary(full_run: Path):
     assert found["cells_across"] == 6 and 0.01 < found["discretisation_error"] < 0.012  # .0116 measured
     assert found["momentum_residual"] < 1e-12
     assert {"pressure", "anisotropy", "growth", "division", "obstacle"} <= set(found["active_effects"])
+    assert 0.0 < found["cpu_start_s"] < found["cpu_s"]
     assert found["threads"] == 1 and found["wall_s"] > 0 and found["pairs"] > 0 and found["peak_memory_mb"] > 0
     assert all(seconds >= 0 for seconds in found["wall_s_by_effect"].values())
     assert checkpoint(full_run)["attribute time_h"] == 0.4
+
+
+def test_what_balance_takes_is_counted(program: Program):
+    """Of each step: one force evaluation at the guess, one an iteration, and one for good."""
+    scene = program.scene(SMALL + SECTIONS["pressure"] + SECTIONS["growth"])
+    assert program("run", scene, "--out", "out").status == 0
+    found = summary(program.folder / "out")
+    assert found["dt_h"]["min"] == found["dt_h"]["max"], "a step was cut: its evaluations are more"
+    assert found["balance_iterations"] > 0
+    assert found["force_evaluations"] == found["balance_iterations"] + 2 * found["steps"]
+
+
+def test_memory_is_that_of_the_program(program: Program):
+    """And not of whoever starts it."""
+    much = b"x" * (600 * 2**20)
+    assert program("run", program.scene(SMALL), "--out", "out").status == 0
+    assert 1.0 < summary(program.folder / "out")["peak_memory_mb"] < len(much) / 2**21
 
 
 def test_frames(full_run: Path):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import effects as tool
 import pytest
+from rootsoil_tools import pages
 
 
 @pytest.mark.parametrize("removal", tool.REMOVALS, ids=lambda removal: removal.effect)
@@ -37,9 +38,12 @@ def test_every_scene_is_in_the_recorded_page(project: Path):
 
 def test_what_is_written_by_hand_is_kept(tmp_path: Path):
     page = tmp_path / "effects.md"
-    assert tool.kept_part(page) == ""
-    page.write_text("made\n" + tool.KEPT_FROM + "by hand\n", encoding="utf-8")
-    assert tool.kept_part(page) == tool.KEPT_FROM + "by hand\n"
+    assert pages.kept_part(page, "effects") == ""
+    page.write_text("made\n" + pages.mark_of("effects") + "by hand\n", encoding="utf-8")
+    assert pages.kept_part(page, "effects") == pages.mark_of("effects") + "by hand\n"
+    assert pages.kept_part(page, "another") == ""
+    recorded = Path(__file__).resolve().parents[2] / "docs" / "effects.md"
+    assert len(pages.kept_part(recorded, "effects")) > 1000
 
 
 @pytest.mark.slow
@@ -49,7 +53,9 @@ def test_sleep_pays(project: Path, tmp_path: Path):
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     with (tmp_path / "out" / "images" / "effects_sleep.csv").open() as file:
-        assert all(float(row["asleep_s_per_h"]) > 0.0 and float(row["awake_s_per_h"]) > 0.0 for row in csv.DictReader(file))
+        assert all(
+            float(row["asleep_s_per_h"]) > 0.0 and float(row["awake_s_per_h"]) > 0.0 for row in csv.DictReader(file)
+        )
     history = tool.Run(tmp_path / "work" / "asleep").history()
     assert history["cells_at_rest"][-1] > 0.4 * history["cells"][-1]  # .447
     lengths = [tool.Run(tmp_path / "work" / name).history()["length_mm"][-1] for name in ("awake", "asleep")]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from rootsoil_tools.accuracy_grid import (
     place_of_task,
 )
 from rootsoil_tools.accuracy_table import Row, deviations, numbers, place_of
+from rootsoil_tools.pages import table
 from rootsoil_tools.problems import Problem
 from rootsoil_tools.work_precision import PICTURES, points_of
 
@@ -45,11 +46,6 @@ NamedLevel = tuple[str, float]  # of a choice; NaN where it has none
 
 
 # ---- text -----------------------------------------------------------------------------------------
-
-
-def table(head: Sequence[str], lines: Iterable[Sequence[str]]) -> str:
-    """A Markdown table."""
-    return "\n".join(["| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *lines]]) + "\n"
 
 
 def short(number: float) -> str:
