@@ -305,9 +305,9 @@ void Run<Dim>::write_checkpoint_file() {
   checkpoint.reals["run/worst"] = {unbalanced_max_, momentum_residual_max_, unbalanced_error_};
   checkpoint.reals["run/unbalanced"] = unbalanced_.save();
   checkpoint.reals["run/accuracy"] = accuracy_.save();
-  write_checkpoint(folder_ / "checkpoint.h5", checkpoint);
+  write_checkpoint(folder_ / "checkpoint.h5", std::move(checkpoint));
   checkpoint_h_ = tissue.time_h;
-  checkpoint_step_ = checkpoint.step;
+  checkpoint_step_ = model().solver.steps();
   remove_old_state_files();
 }
 
@@ -357,6 +357,7 @@ void Run<Dim>::write_summary(const std::string& status) const {
       {"steps", solver.steps()},
       {"balance_iterations", solver.effort().balance_iterations},
       {"force_evaluations", solver.effort().force_evaluations},
+      {"unstable_steps", solver.effort().unstable_steps},
       {"cells_start", cells_start_},
       {"cells_end", tissue.cells.total()},
       {"divisions", divisions()},
@@ -494,6 +495,12 @@ ExitStatus Run<Dim>::go() {
       unbalanced_.what(), 100.0 * unbalanced_error_, 100.0 * unbalanced_max_,
       100.0 * discretisation_error(scene_.numerics, model().initial.across), name_of(scene_.numerics.accuracy),
       model().initial.across);
+  if (const std::int64_t unstable = solver.effort().unstable_steps; unstable > 0) {
+    log_.warning(
+        "{} steps ended in a balance that a small push would end, and none was found beside it: the root may have "
+        "buckled there (numerics.step_h: shorter steps)",
+        unstable);
+  }
   for (const std::string& complaint : accuracy_.complaints()) log_.warning("{}", complaint);
   for (const auto& effect : model().effects) {
     if (const std::string remark = effect->closing_remark(); !remark.empty()) log_.info("{}", remark);

@@ -12,13 +12,14 @@ namespace {
 
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
 constexpr int most_after_balance = 8;  // iterations after the first within the force's tolerance
-constexpr int mixed_iterations = 30;
+constexpr int mixed_iterations = 20;
 constexpr double most_strain = 0.2;  // of a pair's distance in one iteration
 // Stability: stiffness of the softest mode over the tissue's own; displacements over a cell's size; thrust over p times
 // the held cells' faces.
 constexpr double least_stiffness = 1e-3, ample_stiffness = 0.5, small_move = 1e-3, first_move = 0.1;
 constexpr double least_thrust = 1e-4;
-constexpr int most_escapes = 3, most_doublings = 20, iterations_of_a_good_matrix = 5;
+constexpr double doubtful_start = 0.2;  // imbalance
+constexpr int most_escapes = 3, most_held = 25, iterations_of_a_good_matrix = 5;
 // Multiplications of a band's factor, where layers could serve: what costs no more than they do, and what is worth
 // while where they fail.
 constexpr double little_work = 2e8, most_work = 2e11;
@@ -152,16 +153,18 @@ class Search {
     }
   }
 
-  /// A balance that a small push would end is left for the one that the root falls into.
+  /// A balance that a small push would end is left for the one that the root falls into, and one that is not found for
+  /// want of stiffness is looked for along the mode that has little.
   Balance run() {
-    for (int k = 0;; ++k) {
-      iterate();
-      if (!balance_.found || !pressed()) break;
+    choose_start();
+    iterate();
+    for (int k = 0; std::isfinite(balance_.imbalance) && pressed() && k < most_escapes; ++k) {
       if (balance_.iterations > iterations_of_a_good_matrix && !build()) break;
       const Mode mode = softest_mode();
       balance_.stable = mode.stiffness > least_stiffness;
-      if (balance_.stable || k == most_escapes) break;
-      leave(mode);
+      if (balance_.found ? balance_.stable : mode.stiffness > ample_stiffness) break;
+      follow(mode);
+      iterate();
     }
     put(x_);
     return balance_;
@@ -207,6 +210,18 @@ class Search {
       }
     }
     balance_.imbalance = places_ > 0 ? std::sqrt(square / static_cast<double>(places_)) : 0.0;
+  }
+
+  /// After a sudden motion the last step's flow is a worse guess than none.
+  void choose_start() {
+    evaluate(x_);
+    judge();
+    const double with_flow = balance_.imbalance;
+    if (with_flow < doubtful_start) return;
+    const Eigen::VectorXd flow = std::exchange(x_, Eigen::VectorXd::Zero(x_.size()));
+    evaluate(x_);
+    judge();
+    if (with_flow <= balance_.imbalance) x_ = flow;
   }
 
   bool build() {
@@ -262,11 +277,10 @@ class Search {
       step = z_;
       x_ += limited(step);
     }
-    if (stillest_x.size() == 0) return;
-    x_ = stillest_x;
+    x_ = stillest_x.size() > 0 ? stillest_x : best_x;
     evaluate(x_);
     judge();
-    balance_.found = true;
+    balance_.found = stillest_x.size() > 0;
   }
 
   const Eigen::VectorXd& limited(Eigen::VectorXd& step) const {
@@ -310,21 +324,30 @@ class Search {
     return mode;
   }
 
-  /// Away from a balance that is none for long: the mode's amplitude is held at twice the last one, and all else in
-  /// balance, until its force points back; a balance lies between the last two. To the side from which the step came.
-  void leave(const Mode& mode) {
-    const double side = mode.load.dot(x_) > 0.0 ? -1.0 : 1.0;
-    double way = side * first_move / largest_move<Dim>(mode.v, sizes_);
+  /// Along the mode, its amplitude held and all else in balance, until its force is none: steps that double, and then
+  /// between the last two (regula falsi). Where the force points; from a balance to the side that the step came from.
+  void follow(const Mode& mode) {
     held_ = &mode;
-    for (int k = 0; k < most_doublings; ++k, way *= 2.0) {
-      const Eigen::VectorXd before = x_;
-      const double pull_before = pull_;
-      x_ += way * mode.v;
+    const double move_of_one = largest_move<Dim>(mode.v, sizes_);
+    evaluate(x_);
+    Eigen::VectorXd near = x_, far;
+    double pull_near = pull_, pull_far = 0.0;
+    const double side = (balance_.found ? -mode.load.dot(x_) : pull_) < 0.0 ? -1.0 : 1.0;
+    double way = side * first_move / move_of_one;
+    for (int k = 0; k < most_held; ++k) {
+      x_ = far.size() == 0 ? Eigen::VectorXd(near + way * mode.v)
+                           : Eigen::VectorXd(near + pull_near / (pull_near - pull_far) * (far - near));
       iterate();
-      if (!balance_.found) break;
-      if (side * pull_ <= 0.0) {
-        if (k > 0) x_ = before + pull_before / (pull_before - pull_) * (x_ - before);
-        break;
+      if (!balance_.found || std::abs(pull_) * move_of_one <= problem_.tolerance) break;
+      if (side * pull_ < 0.0) {
+        if (far.size() > 0) pull_near *= 0.5;  // the end that stays counts less (Illinois)
+        far = x_;
+        pull_far = pull_;
+      } else {
+        if (far.size() > 0) pull_far *= 0.5;
+        near = x_;
+        pull_near = pull_;
+        way *= 2.0;
       }
     }
     held_ = nullptr;

@@ -312,6 +312,7 @@ void Solver<Dim>::quasi_static_step() {
     }
     end_window();
     imbalance_ = std::max(imbalance_, balance_.imbalance);
+    effort_.unstable_steps += balance_.stable ? 0 : 1;
     shortest_step_h_ = std::min(shortest_step_h_, window_h_);
     done += whole >> level;
     while (level > 0 && done % (whole >> (level - 1)) == 0 && balance_.iterations < 15) --level;
@@ -370,7 +371,7 @@ void Solver<Dim>::save(std::map<std::string, std::vector<double>>& reals,
   reals["solver/shortest_step_h"] = {shortest_step_h_};
   integers["solver/counters"] = {steps_, tissue_.next_cell_id,
                                  static_cast<std::int64_t>(tissue_.cells.total() - tissue_.cells.size()),
-                                 effort_.balance_iterations, effort_.force_evaluations};
+                                 effort_.balance_iterations, effort_.force_evaluations, effort_.unstable_steps};
   if (!terms_.non_affine) return;
   std::vector<std::int64_t>& index = integers["solver/slip_pairs"];
   std::vector<double>& slip = reals["solver/slip_mm"];
@@ -396,7 +397,7 @@ void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& real
   tissue_.next_cell_id = counters.at(1);
   tissue_.time_h = step_time_h(steps_, tissue_.step_h);
   tissue_.cells.rest(static_cast<std::size_t>(counters.at(2)));
-  effort_ = {counters.at(3), counters.at(4)};
+  effort_ = {counters.at(3), counters.at(4), counters.at(5)};
   const std::size_t n = tissue_.cells.size();
   for (std::size_t i = 0; i < n; ++i) tissue_.window_index[i] = static_cast<std::int64_t>(i);
   if (!terms_.non_affine) return;

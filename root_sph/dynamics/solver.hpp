@@ -19,6 +19,7 @@ double step_time_h(std::int64_t steps, double step_h);
 struct Effort {
   std::int64_t balance_iterations = 0;  ///< without inertia; of a step that was cut, those before it as well
   std::int64_t force_evaluations = 0;   ///< passes of the pair loop
+  std::int64_t unstable_steps = 0;      ///< that ended in a balance that a small push would end
 };
 
 template <int Dim>

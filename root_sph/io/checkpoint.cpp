@@ -28,8 +28,23 @@ std::string block_for(std::string_view content) {
 }
 
 template <class T>
-void write_values(hid_t file, const std::map<std::string, std::vector<T>>& columns) {
-  for (const auto& [name, values] : columns) hdf5::create_dataset(file, name, std::span(values), 1);
+void write_values(hid_t file, std::map<std::string, std::vector<T>>& columns) {
+  for (; !columns.empty(); columns.erase(columns.begin())) {
+    const auto& [name, values] = *columns.begin();
+    hdf5::create_dataset(file, name, std::span(values), 1);
+  }
+}
+
+std::string image_after_block(Checkpoint& checkpoint) {
+  const hdf5::Handle file = hdf5::create_in_memory();
+  hdf5::write_attribute(file, "time_h", checkpoint.time_h);
+  hdf5::write_attribute(file, "step", checkpoint.step);
+  hdf5::write_attribute(file, "scene_digest", checkpoint.scene_digest);
+  hdf5::write_attribute(file, "program_version", checkpoint.program_version);
+  hdf5::write_attribute(file, "dimension", static_cast<std::int64_t>(checkpoint.dimension));
+  write_values(file, checkpoint.reals);
+  write_values(file, checkpoint.integers);
+  return hdf5::image(file, block_bytes);
 }
 
 void read_values(hid_t group, const std::string& prefix, Checkpoint& checkpoint) {
@@ -82,17 +97,10 @@ constexpr const char* start_anew =
 
 }  // namespace
 
-void write_checkpoint(const fs::path& path, const Checkpoint& checkpoint) {
-  const hdf5::Handle file = hdf5::create_in_memory();
-  hdf5::write_attribute(file, "time_h", checkpoint.time_h);
-  hdf5::write_attribute(file, "step", checkpoint.step);
-  hdf5::write_attribute(file, "scene_digest", checkpoint.scene_digest);
-  hdf5::write_attribute(file, "program_version", checkpoint.program_version);
-  hdf5::write_attribute(file, "dimension", static_cast<std::int64_t>(checkpoint.dimension));
-  write_values(file, checkpoint.reals);
-  write_values(file, checkpoint.integers);
-  const std::string content = hdf5::image(file);
-  write_text_atomically(path, block_for(content) + content);
+void write_checkpoint(const fs::path& path, Checkpoint checkpoint) {
+  std::string bytes = image_after_block(checkpoint);
+  bytes.replace(0, block_bytes, block_for(std::string_view(bytes).substr(block_bytes)));
+  write_text_atomically(path, bytes);
 }
 
 Checkpoint read_checkpoint(const fs::path& path) {

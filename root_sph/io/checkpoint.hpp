@@ -27,8 +27,9 @@ struct Checkpoint {
   bool operator==(const Checkpoint&) const = default;
 };
 
-/// Replaces the file in one step; the previous checkpoint stays until the new one is complete on the disk.
-void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
+/// Replaces the file in one step; the previous checkpoint stays until the new one is complete on the disk. What is
+/// written is let go on the way: a large root's checkpoint would stand four times in memory.
+void write_checkpoint(const std::filesystem::path& path, Checkpoint checkpoint);
 
 /// FileError: missing, damaged, or not a checkpoint.
 Checkpoint read_checkpoint(const std::filesystem::path& path);

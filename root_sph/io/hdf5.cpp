@@ -111,11 +111,11 @@ Handle create_in_memory() {
   return {H5Fcreate("new file", H5F_ACC_TRUNC, creation, access), H5Fclose, "create a file in memory"};
 }
 
-std::string image(const Handle& file) {
+std::string image(const Handle& file, std::size_t room_before) {
   check(H5Fflush(file, H5F_SCOPE_GLOBAL), "complete a file in memory");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  std::string bytes(static_cast<std::size_t>(std::max<ssize_t>(size, 0)), '\0');
-  if (size <= 0 || H5Fget_file_image(file, bytes.data(), bytes.size()) != size) {
+  std::string bytes(room_before + static_cast<std::size_t>(std::max<ssize_t>(size, 0)), '\0');
+  if (size <= 0 || H5Fget_file_image(file, bytes.data() + room_before, bytes.size() - room_before) != size) {
     throw FileError(fmt::format("cannot complete a file in memory: {}", reason()));
   }
   return bytes;

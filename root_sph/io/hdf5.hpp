@@ -39,7 +39,8 @@ class Handle {
 void check(herr_t status, std::string_view action);
 
 Handle create_in_memory();
-std::string image(const Handle& file);
+/// The file's bytes, after room for a head.
+std::string image(const Handle& file, std::size_t room_before = 0);
 /// For what may be too large for memory; the file is there and room for it is set aside (start_temporary).
 Handle open_to_extend(const std::filesystem::path& path);
 void flush(const Handle& file);

@@ -83,18 +83,72 @@ TEST(QuasiStatic, IsSecondOrderInTheStep) {
   EXPECT_GT(std::log2(coarse / fine), 1.8);
 }
 
-/// A root that runs into a wall is stopped by p (1 - nu_A) W, and hardly more at any time.
+/// Tip of a clamped column under a force that keeps its direction, beyond its Euler load: with k the sine of half the
+/// angle at the tip, P/P_Euler = (2 K(k)/pi)^2, across 2 k L/K, along L (2 E/K - 1). Love, Elasticity, 263.
+Vec<2> elastica_tip(double load_over_euler, double length_mm) {
+  double low = 0.0, high = 1.0 - 1e-9;
+  while (high - low > 1e-14) {
+    const double k = 0.5 * (low + high), q = 2.0 * std::comp_ellint_1(k) / std::numbers::pi;
+    (q * q < load_over_euler ? low : high) = k;
+  }
+  const double quarter = std::comp_ellint_1(low);
+  return length_mm * Vec<2>(2.0 * std::comp_ellint_2(low) / quarter - 1.0, 2.0 * low / quarter);
+}
+
+/// Nothing pushes the straight column aside: the solver must leave the straight balance by itself, and find the bent
+/// one.
+TEST(QuasiStatic, AStraightColumnBucklesIntoTheElastica) {
+  constexpr double length_mm = 2.0, size_mm = beam_depth_mm / 8.0;
+  SceneRun<2> run(beam_case(2, 8, length_mm), balanced_steps({"numerics.step_h=1"}));
+  const Section section = section_of(run);
+  // the load acts on the last layer, and the held end as one three quarters of a cell behind the first held layer
+  const double held_to_load_mm = length_mm - 0.5 * size_mm + 0.75 * size_mm;
+  const double euler = euler_load(section, held_to_load_mm);
+  double loaded = 0.0, load = 0.0;
+  const auto in_last_layer = [&](std::int64_t id) { return run.start.at(id)[0] > length_mm - size_mm; };
+  for (const auto& [id, x] : run.start) loaded += in_last_layer(id) ? 1.0 : 0.0;
+  run.solver.hooks().forces.emplace_back("test load", [&](Tissue<2>& t, SlipAdvance) {
+    for (std::size_t i = 0; i < t.cells.size(); ++i) {
+      if (in_last_layer(t.cells.cell_id[i])) t.force[i][0] -= load / loaded;
+    }
+  });
+  const auto tip = [&] {
+    Vec<2> mean = Vec<2>::Zero();
+    for (std::size_t i = 0; i < run.tissue.cells.size(); ++i) {
+      if (in_last_layer(run.tissue.cells.cell_id[i])) mean += run.tissue.cells.position[i] / loaded;
+    }
+    return mean;
+  };
+  double worst = 0.0;
+  for (int step = 1; step <= 16; ++step) {
+    load = euler * (0.9 + 0.025 * step);  // 1.3 in the end
+    run.advance_to(step);
+    if (load < 0.985 * euler) {
+      EXPECT_LT(std::abs(tip()[1]), 1e-3 * length_mm) << load / euler;
+    }
+    if (load < 1.1 * euler) continue;
+    const Vec<2> theory = elastica_tip(load / euler, held_to_load_mm);
+    worst = std::max(worst, std::abs(std::abs(tip()[1]) / theory[1] - 1.0));
+  }
+  expect_within_record("tip across over the elastica's - 1 at 1.1 to 1.3 times Euler's load", worst);
+  EXPECT_EQ(run.solver.effort().unstable_steps, 0);
+}
+
+/// A root that runs into a wall is stopped by p (1 - nu_A) W, and hardly more at any time. W goes on growing: it is the
+/// width at the start, times what the cells' second moment has gained since.
 TEST(QuasiStatic, AWallStopsTheRoot) {
   const std::string wall = "[[obstacle]]\nshape = \"plane\"\nposition_mm = [1.02, 0]\nnormal = [-1, 0]\n";
   for (const std::string modulus : {"1020", "100000"}) {
     SceneRun<2> run(growth_case + wall,
                     balanced_steps({"root.cap=false", "root.cell_size_mm=0.02", "obstacle.1.friction=0",
                                     "obstacle.1.contact_modulus_MPa=" + modulus}));
+    const auto radius = [&] { return radius_mm<2>(run.tissue, 0.1, 0.4); };
+    const double width_over_radius = 2.0 * run.scene.root.radius_mm / radius();
     double largest = 0.0, force = 0.0, arrest = 0.0;
     run.advance_to(1.0, [&] {
       force = 0.0;
       for (const auto& effect : run.model->effects) force -= effect->contact_force_N()[0];
-      arrest = run.tissue.pressure_MPa * (1.0 - run.scene.tissue.nu_axial) * 2.0 * radius_mm<2>(run.tissue, 0.1, 0.4);
+      arrest = run.tissue.pressure_MPa * (1.0 - run.scene.tissue.nu_axial) * width_over_radius * radius();
       largest = std::max(largest, force / arrest);
     });
     expect_within_record("modulus " + modulus + ": force/arresting force - 1", force / arrest - 1.0);
