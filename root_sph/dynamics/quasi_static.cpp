@@ -310,15 +310,24 @@ class Search {
     }
     preconditioner_.apply(mode.load, mode.v);
     const Eigen::VectorXd here = r_;
+    const auto resisted = [&](double move) -> Eigen::VectorXd {  // K v
+      const double push = move / largest_move<Dim>(mode.v, sizes_);
+      evaluate(x_ + push * mode.v);
+      return (here - r_) / push;
+    };
+    const auto stiffness_over = [&](const Eigen::VectorXd& force) { return mode.v.dot(force) / mode.v.dot(mode.load); };
     for (int k = 0;; ++k) {
-      const double small = small_move / largest_move<Dim>(mode.v, sizes_);
-      evaluate(x_ + small * mode.v);
-      const Eigen::VectorXd resisted = (here - r_) / small;  // K v
-      mode.stiffness = mode.v.dot(resisted) / mode.v.dot(mode.load);
+      const Eigen::VectorXd force = resisted(small_move);
+      mode.stiffness = stiffness_over(force);
       if (mode.stiffness > ample_stiffness || k == 2) break;
-      preconditioner_.apply(resisted, z_);
+      preconditioner_.apply(force, z_);
       mode.v -= z_;
-      mode.load -= resisted;
+      mode.load -= force;
+    }
+    // a contact that opens or shuts is no mode: what has no stiffness has none to either side, and for larger pushes
+    for (const double move : {-small_move, 10.0 * small_move, -10.0 * small_move}) {
+      if (mode.stiffness > least_stiffness) break;
+      mode.stiffness = stiffness_over(resisted(move));
     }
     r_ = here;
     return mode;
