@@ -38,7 +38,7 @@ template <int Dim>
 class SceneRun {
  public:
   explicit SceneRun(const std::string& text, const std::vector<std::string>& overrides = {})
-      : scene(parse_scene(text, "test.toml", with_inertia(overrides))),
+      : scene(parse_scene(text, "test.toml", text.find("stepper") == std::string::npos ? with_inertia(overrides) : overrides)),
         model(build_model<Dim>(scene)),
         solver(model->solver),
         tissue(solver.tissue()) {

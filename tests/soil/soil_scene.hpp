@@ -52,6 +52,13 @@ midline_damping_per_h = 0
 every_h = 1
 )";
 
+/// The same without inertia: the default, with steps of 1e-3 h.
+inline const std::string balanced_text = [] {
+  std::string text = scene_text;
+  const std::size_t at = text.find("[numerics]");
+  return text.replace(at, text.find("[output]") - at, "[numerics]\nstepper = \"quasi_static\"\nstep_h = 1e-3\n");
+}();
+
 /// The tip moves 3e-4 cells in a step: with more, numerical inertia shows as force when the root meets a plate. No
 /// ramp: these roots start out of contact, and one that meets a plate while forces still rise presses too deep (17 %
 /// too hard).

@@ -69,9 +69,12 @@ class SoilContactEffect final : public Effect<Dim> {
     Vec<Dim> tipwards;
   };
 
-  void begin_window(Tissue<Dim>& tissue, std::vector<Vec<Dim>>& stiffness);
+  void begin_window(Tissue<Dim>& tissue);
+  void bound_stiffness(std::vector<Vec<Dim>>& stiffness) const;
   void spread(Tissue<Dim>& tissue);
-  void add_forces(Tissue<Dim>& tissue);
+  void add_forces(Tissue<Dim>& tissue, SlipAdvance advance);
+  /// What the window is of a whole one: a step without inertia may be made in parts.
+  double part() const;
   void move_markers(const Tissue<Dim>& tissue);
   void root_did(const std::vector<double>& work_Nmm);
   void exchange(const Tissue<Dim>& tissue);

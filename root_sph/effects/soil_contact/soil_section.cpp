@@ -205,13 +205,7 @@ void complete_soil(Scene& scene) {
   if (!scene.has_root) return;
   check_room_for_root(scene);
   for (std::size_t i = 0; i < soil.obstacles.size(); ++i) check_soil_obstacle(soil.obstacles[i], i, scene);
-  if (!scene.numerics.has_inertia()) {
-    origins.fail(
-        origins.has("numerics.stepper") ? "numerics.stepper" : "soil",
-        "a root among grains is moved by forces of their last interval, and that takes its inertia to be stable",
-        std::string(name_of(scene.numerics.stepper)), "symplectic, predictor_corrector",
-        "write stepper = \"symplectic\" in [numerics]");
-  }
+  scene.facts.longest_step_h = scene.find<SoilContactSection>()->interval_h;
 }
 
 }  // namespace
