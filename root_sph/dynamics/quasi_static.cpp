@@ -12,7 +12,9 @@ namespace {
 
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
 constexpr int mixed_iterations = 12;
-constexpr double most_strain = 0.2;  // of a pair's distance in one iteration
+constexpr double most_strain = 0.2;      // of a pair's distance in one iteration
+constexpr double short_strain = 5e-3;    // of a pair's distance in a step after which the matrix is kept
+constexpr int most_kept_iterations = 6;  // with a matrix that was kept
 // Multiplications of a band's factor, where layers could serve: what costs no more than they do, and what is worth
 // while where they fail.
 constexpr double little_work = 2e8, most_work = 2e11;
@@ -75,12 +77,33 @@ class Mixing {
   Eigen::VectorXd x_, r_, z_;  ///< of the latest iteration; empty: there was none
 };
 
+/// Of each place, 1 where what the cell touches is stiff enough to matter beside the tissue.
 template <int Dim>
-bool same_contacts(const std::vector<Mat<Dim>>& a, const std::vector<Mat<Dim>>& b) {
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    if (a[i].isZero(0.0) != b[i].isZero(0.0)) return false;
+std::vector<std::int64_t> touched_places(const Tissue<Dim>& tissue, const FreeCells& free,
+                                         const std::vector<Mat<Dim>>& contact) {
+  constexpr double share = 0.05;  // of E_A through a cell
+  std::vector<std::int64_t> touched(free.cell.size(), 0);
+  for (std::size_t p = 0; p < touched.size() && !contact.empty(); ++p) {
+    const std::int32_t i = free.cell[p];
+    const double stiffness = tissue.material.E_axial_MPa * std::pow(tissue.cells.volume[i], 1.0 - 2.0 / Dim);
+    touched[p] = contact[i].norm() > share * stiffness;
   }
-  return a.size() == b.size();
+  return touched;
+}
+
+/// Largest squared strain of a pair in a displacement of the free cells.
+template <int Dim>
+double largest_strain2(const Tissue<Dim>& tissue, const FreeCells& free, const Eigen::VectorXd& d) {
+  const auto moved = [&](std::int32_t cell) -> Vec<Dim> {
+    const std::int32_t p = free.place[cell];
+    return p < 0 ? Vec<Dim>(Vec<Dim>::Zero()) : Vec<Dim>(d.segment<Dim>(Eigen::Index{p} * Dim));
+  };
+  double strain2 = 0.0;
+  for (const auto& [i, j] : tissue.pairs.pairs) {
+    const Vec<Dim> apart = tissue.cells.position[j] - tissue.cells.position[i];
+    strain2 = std::max(strain2, (moved(j) - moved(i)).squaredNorm() / apart.squaredNorm());
+  }
+  return strain2;
 }
 
 }  // namespace
@@ -89,29 +112,67 @@ template <int Dim>
 Balance QuasiStatic<Dim>::solve(const Tissue<Dim>& tissue, const PairTerms<Dim>& terms, double dt_h, double tolerance,
                                 const Evaluate& evaluate, const ContactStiffness& contact,
                                 Displacements& displacement) {
-  if (!band_) {
-    band_ = make_band_preconditioner<Dim>();
-    layers_ = make_layer_preconditioner<Dim>();
-  }
-  const FreeCells free = order_free_cells<Dim>(tissue.cells);
-  const auto attempt_with = [&](Preconditioner<Dim>& preconditioner) {
-    return attempt(preconditioner, tissue, terms, free, dt_h, tolerance, evaluate, contact, displacement);
+  const std::optional<FreeCells> known = kept_places(tissue, dt_h);
+  if (!known) kept_ = {};
+  const FreeCells free = known ? *known : order_free_cells<Dim>(tissue.cells);
+  const auto attempt_with = [&](Preconditioner<Dim>& preconditioner, Kept* matrix) {
+    return attempt(preconditioner, matrix, tissue, terms, free, dt_h, tolerance, evaluate, contact, displacement);
   };
   if constexpr (Dim == 2) {
-    return attempt_with(*band_);
+    return attempt_with(*band_, &kept_);
   } else {
     const double work = band_work<Dim>(tissue.pairs, free);
-    if (work < little_work) return attempt_with(*band_);
+    if (work < little_work) return attempt_with(*band_, &kept_);
     const Displacements guess = displacement;
-    const Balance balance = attempt_with(*layers_);
+    const Balance balance = attempt_with(*layers_, nullptr);
     if (balance.found || work >= most_work) return balance;
     displacement = guess;
-    return attempt_with(*band_);
+    return attempt_with(*band_, nullptr);
   }
 }
 
+/// The free cells in the order of the kept matrix; absent: it serves no more.
 template <int Dim>
-Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, const Tissue<Dim>& tissue,
+std::optional<FreeCells> QuasiStatic<Dim>::kept_places(const Tissue<Dim>& tissue, double dt_h) const {
+  const auto& cells = tissue.cells;
+  if (kept_.id.empty() || kept_.dt_h != dt_h) return {};
+  std::vector<std::int32_t> cell_of(static_cast<std::size_t>(tissue.next_cell_id), -1);
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells.clamped[i]) continue;
+    cell_of[static_cast<std::size_t>(cells.cell_id[i])] = static_cast<std::int32_t>(i);
+    ++number;
+  }
+  if (number != kept_.id.size()) return {};
+  FreeCells free;
+  free.place.assign(cells.size(), -1);
+  for (const std::int64_t id : kept_.id) {
+    const std::int32_t i = cell_of[static_cast<std::size_t>(id)];
+    if (i < 0) return {};
+    free.place[i] = static_cast<std::int32_t>(free.cell.size());
+    free.cell.push_back(i);
+  }
+  return free;
+}
+
+template <int Dim>
+void QuasiStatic<Dim>::save(std::map<std::string, std::vector<double>>& reals,
+                            std::map<std::string, std::vector<std::int64_t>>& integers) const {
+  integers["balance/places"] = kept_.id;
+  integers["balance/touched"] = kept_.is_touched;
+  reals["balance/dt_h"] = {kept_.dt_h};
+  reals["balance/matrix"] = kept_.id.empty() ? std::vector<double>{} : band_->save();
+}
+
+template <int Dim>
+void QuasiStatic<Dim>::restore(const std::map<std::string, std::vector<double>>& reals,
+                               const std::map<std::string, std::vector<std::int64_t>>& integers) {
+  kept_ = {integers.at("balance/places"), integers.at("balance/touched"), reals.at("balance/dt_h").at(0)};
+  if (!kept_.id.empty()) band_->restore(reals.at("balance/matrix"));
+}
+
+template <int Dim>
+Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, Kept* matrix, const Tissue<Dim>& tissue,
                                   const PairTerms<Dim>& terms, const FreeCells& free, double dt_h, double tolerance,
                                   const Evaluate& evaluate, const ContactStiffness& contact,
                                   Displacements& displacement) const {
@@ -143,7 +204,9 @@ Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, const Tis
   };
 
   Mixing mixing;
-  std::vector<Mat<Dim>> touching;
+  std::vector<std::int64_t> touched;
+  bool built = matrix != nullptr && !matrix->id.empty(), fresh = false;
+  if (built) touched = matrix->is_touched;
   int halvings = 0, rebuilds = 0;
   double best = 0.0;
   Eigen::VectorXd best_x, step;
@@ -152,6 +215,7 @@ Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, const Tis
     if (!std::isfinite(balance.imbalance)) return balance;
     if (balance.imbalance <= tolerance) {
       balance.found = true;
+      if (matrix && largest_strain2<Dim>(tissue, free, x) > short_strain * short_strain) *matrix = {};
       return balance;
     }
     if (balance.iterations >= most_iterations) return balance;
@@ -167,25 +231,26 @@ Balance QuasiStatic<Dim>::attempt(Preconditioner<Dim>& preconditioner, const Tis
       best_x = x;
       halvings = 0;
     }
-    std::vector<Mat<Dim>> now = contact();
-    if (balance.iterations == 0 || (rebuilds < most_rebuilds && !same_contacts<Dim>(now, touching))) {
-      touching = std::move(now);
+    const std::vector<Mat<Dim>> touching = contact();
+    std::vector<std::int64_t> now = touched_places<Dim>(tissue, free, touching);
+    const bool too_old = !fresh && balance.iterations >= most_kept_iterations;
+    if (!built || too_old || (rebuilds < most_rebuilds && now != touched)) {
+      touched = std::move(now);
+      if (matrix) *matrix = {};
       if (!preconditioner.build(tissue, terms, free, touching, dt_h)) return balance;
+      if (matrix) {
+        for (const std::int32_t i : free.cell) matrix->id.push_back(cells.cell_id[i]);
+        matrix->is_touched = touched;
+        matrix->dt_h = dt_h;
+      }
+      built = fresh = true;
       ++rebuilds;
       mixing.forget();
     }
     preconditioner.apply(r, z);
     mixing.improve(x, r, z);
     step = z;
-    double strain2 = 0.0;
-    for (const auto& [i, j] : tissue.pairs.pairs) {
-      const auto moved = [&](std::int32_t cell) -> Vec<Dim> {
-        const std::int32_t p = free.place[cell];
-        return p < 0 ? Vec<Dim>(Vec<Dim>::Zero()) : Vec<Dim>(step.segment<Dim>(Eigen::Index{p} * Dim));
-      };
-      strain2 = std::max(strain2,
-                         (moved(j) - moved(i)).squaredNorm() / (cells.position[j] - cells.position[i]).squaredNorm());
-    }
+    const double strain2 = largest_strain2<Dim>(tissue, free, step);
     if (strain2 > most_strain * most_strain) step *= most_strain / std::sqrt(strain2);
     x += step;
   }

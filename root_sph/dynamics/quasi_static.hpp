@@ -3,7 +3,10 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "root_sph/dynamics/preconditioner.hpp"
@@ -36,12 +39,29 @@ class QuasiStatic {
   Balance solve(const Tissue<Dim>& tissue, const PairTerms<Dim>& terms, double dt_h, double tolerance,
                 const Evaluate& evaluate, const ContactStiffness& contact, Displacements& displacement);
 
- private:
-  Balance attempt(Preconditioner<Dim>& preconditioner, const Tissue<Dim>& tissue, const PairTerms<Dim>& terms,
-                  const FreeCells& free, double dt_h, double tolerance, const Evaluate& evaluate,
-                  const ContactStiffness& contact, Displacements& displacement) const;
+  /// The matrix that is kept.
+  void save(std::map<std::string, std::vector<double>>& reals,
+            std::map<std::string, std::vector<std::int64_t>>& integers) const;
+  void restore(const std::map<std::string, std::vector<double>>& reals,
+               const std::map<std::string, std::vector<std::int64_t>>& integers);
 
-  std::unique_ptr<Preconditioner<Dim>> band_, layers_;  ///< kept for their memory
+ private:
+  /// The matrix of an earlier, short step: it serves as long as the same cells are free.
+  struct Kept {
+    std::vector<std::int64_t> id;          ///< of the cell of each place; empty: there is none
+    std::vector<std::int64_t> is_touched;  ///< of each place
+    double dt_h = 0.0;
+  };
+
+  std::optional<FreeCells> kept_places(const Tissue<Dim>& tissue, double dt_h) const;
+  /// \param matrix of the preconditioner, to begin with; null: it is to be built, and not kept
+  Balance attempt(Preconditioner<Dim>& preconditioner, Kept* matrix, const Tissue<Dim>& tissue,
+                  const PairTerms<Dim>& terms, const FreeCells& free, double dt_h, double tolerance,
+                  const Evaluate& evaluate, const ContactStiffness& contact, Displacements& displacement) const;
+
+  std::unique_ptr<Preconditioner<Dim>> band_ = make_band_preconditioner<Dim>(),
+                                       layers_ = make_layer_preconditioner<Dim>();
+  Kept kept_;  ///< of the band
 };
 
 extern template class QuasiStatic<2>;

@@ -366,6 +366,7 @@ void Solver<Dim>::save(std::map<std::string, std::vector<double>>& reals,
                        std::map<std::string, std::vector<std::int64_t>>& integers) const {
   reals["solver/axis"] = axis_.save();
   reals["solver/shortest_step_h"] = {shortest_step_h_};
+  if (!tissue_.inertia) quasi_static_.save(reals, integers);
   integers["solver/counters"] = {steps_, tissue_.next_cell_id,
                                  static_cast<std::int64_t>(tissue_.cells.total() - tissue_.cells.size())};
   if (!terms_.non_affine) return;
@@ -388,6 +389,7 @@ void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& real
                           const std::map<std::string, std::vector<std::int64_t>>& integers) {
   axis_.restore(reals.at("solver/axis"));
   shortest_step_h_ = reals.at("solver/shortest_step_h").at(0);
+  if (!tissue_.inertia) quasi_static_.restore(reals, integers);
   steps_ = integers.at("solver/counters").at(0);
   tissue_.next_cell_id = integers.at("solver/counters").at(1);
   tissue_.time_h = step_time_h(steps_, tissue_.step_h);
