@@ -282,7 +282,7 @@ TEST(Thrust, LongerIntervalsStopAtTheSameForce) {
   SoilContactParameters parameters = predicting();
   parameters.windows_per_interval = 2;
   SoilRun<2> run({"numerics.step_h=2e-3"}, parameters, [](const Scene& s) { return fixed_plate(s, 100.0); });
-  expect_that_of_arrest("soil of 100 N/mm, 4e-3 h", press(run));
+  expect_that_of_arrest("soil of 100 N/mm and 4e-3 h", press(run));
 }
 
 /// The same in 3D, by a shell of markers: p (1 - 2 nu_A) times the section.
@@ -290,7 +290,7 @@ TEST(Thrust, LongerIntervalsStopAtTheSameForce) {
 TEST(Thrust, In3DGrowthFallsLinearlyAndStopsAtTheClosedForm) {
   const SoilContactParameters parameters = predicting();
   SoilRun<3> run({"scene.dimension=3", "root.length_mm=0.8", "root.radius_mm=0.1276", "root.cell_size_mm=0.04",
-                  "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
+                  "numerics.step_h=4e-3", "growth.mature_at_mm=0.6", "growth.mature_width_mm=0.1"},
                  parameters, [](const Scene& s) {
                    twins::HalfSpaceParameters p = plate(s, 0.3, 0.0);
                    p.backing_N_mm = 0.5;
