@@ -151,13 +151,13 @@ TEST(Exchange, PartsOfWindowsMakeAWhole) {
   EXPECT_NEAR(tie.heard.at(0).end_mm[0][0] - tie.heard.at(0).start_mm[0][0], 0.05, 1e-15);
 }
 
-/// The mean over the latest ten intervals or so; where a marker should be by now, and by the end of a part of a window.
+/// The mean over the latest three intervals or so; where a marker should be by now, and by the end of a part of a window.
 TEST(Exchange, MarkersHaveAMeanPace) {
   SoilExchange<2> exchange(row_of_markers(), std::make_unique<Tie>(), {2, false, {}});
   double pace_mm = 0.0, time_h = 0.0;
   for (int interval = 0; interval < 30; ++interval) {
     const double path_mm = interval % 3 == 0 ? 0.04 : 0.01;
-    pace_mm += (path_mm - pace_mm) / std::min(interval + 1, 10);
+    pace_mm += (path_mm - pace_mm) / std::min(interval + 1, 3);
     exchange.begin_interval(time_h);
     for (int k = 0; k < 2; ++k) {
       exchange.move(std::vector<MarkerMotion<2>>(4, {Vec<2>(0.5 * path_mm, 0.0), Spin<2>(0.0)}));

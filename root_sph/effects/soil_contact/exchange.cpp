@@ -16,7 +16,7 @@
 namespace rootsoil {
 namespace {
 
-constexpr double pace_intervals = 10.0;  // over which a marker's mean path is taken
+constexpr double pace_intervals = 3.0;  // over which a marker's mean path is taken
 
 }  // namespace
 
