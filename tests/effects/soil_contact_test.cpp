@@ -151,7 +151,8 @@ TEST(Exchange, PartsOfWindowsMakeAWhole) {
   EXPECT_NEAR(tie.heard.at(0).end_mm[0][0] - tie.heard.at(0).start_mm[0][0], 0.05, 1e-15);
 }
 
-/// The mean over the latest three intervals or so; where a marker should be by now, and by the end of a part of a window.
+/// The mean over the latest three intervals or so; where a marker should be by now, and by the end of a part of a
+/// window.
 TEST(Exchange, MarkersHaveAMeanPace) {
   SoilExchange<2> exchange(row_of_markers(), std::make_unique<Tie>(), {2, false, {}});
   double pace_mm = 0.0, time_h = 0.0;
@@ -166,10 +167,10 @@ TEST(Exchange, MarkersHaveAMeanPace) {
   }
   exchange.begin_interval(time_h);
   exchange.move(std::vector<MarkerMotion<2>>(4, {Vec<2>(0.007, 0.0), Spin<2>(0.0)}));
-  const MarkerForce<2> half = exchange.forces(0.5)[2];
-  EXPECT_NEAR(half.moved_mm[0], 0.5 * 0.01 + 0.007, 1e-14);
-  EXPECT_NEAR(half.expected_mm[0], (0.5 + 0.5) * pace_mm, 1e-14);
-  EXPECT_NEAR(half.pace_mm[0], 0.25 * pace_mm, 1e-14);
+  const MarkerForce<2> force = exchange.forces()[2];
+  EXPECT_NEAR(force.moved_mm[0], 0.5 * 0.01 + 0.007, 1e-14);
+  EXPECT_NEAR(force.expected_mm[0], (0.5 + 0.5) * pace_mm, 1e-14);
+  EXPECT_NEAR(force.pace_mm[0], 0.5 * pace_mm, 1e-14);
 }
 
 TEST(Exchange, SavedAndRestoredInsideAnIntervalItGoesOnAlike) {
@@ -343,15 +344,30 @@ TEST(WindowForces, ABalanceThatIsSoughtCountsOnceItIsFound) {
     for (Vec<2>& x : moved) x[0] += dx;
     return moved;
   };
-  EXPECT_TRUE(window.balance(moved_by(0.3), false).empty());
-  EXPECT_TRUE(window.balance(moved_by(-0.3), false).empty());
+  EXPECT_TRUE(window.balance(moved_by(0.3), 1.0, false).empty());
+  EXPECT_TRUE(window.balance(moved_by(-0.3), 1.0, false).empty());
   EXPECT_EQ(window.applied_N()[0][0], 0.0);
-  const Reals work = window.balance(moved_by(0.005), true);
+  const Reals work = window.balance(moved_by(0.005), 1.0, true);
   const double before_N = 0.5 * (2.0 + 100.0 * 0.001), after_N = 0.5 * (2.0 + 100.0 * 0.006);
   ASSERT_EQ(work.size(), 1u);
   EXPECT_NEAR(window.applied_N()[0][0], -after_N, 1e-12);
   EXPECT_NEAR(work[0], 0.5 * (before_N + after_N) * 0.005, 1e-14);
   EXPECT_NEAR(window.work_Nmm(window.motion(moved_by(0.005), block.cells.size()))[0], 0.0, 1e-15);
+}
+
+/// A step that is cut takes a marker half as far: at that pace grains answer as before.
+TEST(WindowForces, AtTheMeanPaceGrainsAnswerAsBeforeHoweverAStepIsCut) {
+  const Block block;
+  MarkerForce<2> m = measured({-2.0, 0.5}, 100.0);
+  m.moved_mm = m.expected_mm;
+  m.pace_mm = {0.006, -0.002};
+  for (const double part : {1.0, 0.5, 0.25}) {
+    WindowForces<2> window = block.forces(1.0, {m, MarkerForce<2>{}});
+    std::vector<Vec<2>> moved = block.cells;
+    for (Vec<2>& x : moved) x += part * m.pace_mm;
+    window.balance(moved, part, true);
+    EXPECT_LT((window.applied_N()[0] - m.force_N).norm(), 1e-12) << part;
+  }
 }
 
 /// Spread by rows it is at least phi_i k phi_j: for the same motion of all cells it is the contact's own.
@@ -360,14 +376,14 @@ TEST(WindowForces, StiffnessWithoutInertiaBoundsTheContacts) {
   block.markers[1] = {-0.08, 0.18};  // outside, where some weights are negative
   const WindowForces<2> window = block.forces(0.5, {MarkerForce<2>{}, measured({-2.0, 1.0}, 80.0)});
   std::vector<Mat<2>> rows(36, Mat<2>::Zero());
-  window.add_stiffness(block.cells, rows);
+  window.add_stiffness(block.cells, 1.0, rows);
   Mat<2> total = Mat<2>::Zero();
   for (const Mat<2>& k : rows) total += k;
   double magnitudes = 0.0;
   for (const auto& s : window.mapping().shares(1)) magnitudes += std::abs(s.weight);
   EXPECT_LT((total - 0.5 * 80.0 * magnitudes * magnitudes * Mat<2>::Identity()).norm(), 1e-11);
   std::vector<Mat<2>> first(3, Mat<2>::Zero());  // the other cells rest
-  window.add_stiffness(block.cells, first);
+  window.add_stiffness(block.cells, 1.0, first);
   EXPECT_EQ(first[2], rows[2]);
 }
 

@@ -96,7 +96,7 @@ void SoilExchange<Dim>::begin_interval(double time_h) {
 }
 
 template <int Dim>
-std::vector<MarkerForce<Dim>> SoilExchange<Dim>::forces(double part) const {
+std::vector<MarkerForce<Dim>> SoilExchange<Dim>::forces() const {
   const double whole = parameters_.windows_per_interval;
   std::vector<MarkerForce<Dim>> forces;
   forces.reserve(load_.size());
@@ -104,7 +104,7 @@ std::vector<MarkerForce<Dim>> SoilExchange<Dim>::forces(double part) const {
     const Load& load = load_[m];
     forces.push_back({load.force_N, load.torque_Nmm, load.stiffness_N_mm,
                       0.5 * load.path_mm + surface_.positions()[m] - load.start_mm,
-                      (0.5 + windows_done_ / whole) * load.pace_mm, part / whole * load.pace_mm});
+                      (0.5 + windows_done_ / whole) * load.pace_mm, load.pace_mm / whole});
   }
   return forces;
 }

@@ -45,10 +45,10 @@ class SoilExchange {
 
   /// Markers are inserted, removed, in or out of the soil's reach. What they carried stays with them.
   void begin_interval(double time_h);
-  /// One a marker. \param part that the window is of a whole one: steps without inertia may be cut into halves,
-  /// quarters
-  std::vector<MarkerForce<Dim>> forces(double part = 1.0) const;
-  /// Markers go with the tissue; a window is over.
+  /// One a marker.
+  std::vector<MarkerForce<Dim>> forces() const;
+  /// Markers go with the tissue; a window is over. \param part that it was of a whole one: a step without inertia may
+  /// be cut into halves, quarters, ...
   void move(const std::vector<MarkerMotion<Dim>>& motion, double part = 1.0);
   /// Tells the soil how the markers moved until now and takes its forces for the next interval. Returns the work that
   /// the soil received at each of the markers it knows, by its own forces, N mm.

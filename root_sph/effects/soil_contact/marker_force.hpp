@@ -14,7 +14,7 @@ struct MarkerForce {
   double stiffness_N_mm = 0.0;              ///< of the marker's contacts
   Vec<Dim> moved_mm = Vec<Dim>::Zero();     ///< since the middle of the interval to which the mean belongs, until now
   Vec<Dim> expected_mm = Vec<Dim>::Zero();  ///< the same at its mean pace
-  Vec<Dim> pace_mm = Vec<Dim>::Zero();      ///< and in the window that begins
+  Vec<Dim> pace_mm = Vec<Dim>::Zero();      ///< and in a whole window
 };
 
 /// How a marker moves through a window.

@@ -101,13 +101,14 @@ std::vector<double> WindowForces<Dim>::follow(std::span<const Vec<Dim>> position
 }
 
 template <int Dim>
-ContactResponse<Dim> WindowForces<Dim>::response(std::size_t marker, const Vec<Dim>& moved_mm) const {
-  ContactResponse<Dim> whole = balanced_response<Dim>(measured_[marker], moved_mm, measured_[marker].pace_mm, yields_);
+ContactResponse<Dim> WindowForces<Dim>::response(std::size_t marker, const Vec<Dim>& moved_mm, double part) const {
+  ContactResponse<Dim> whole =
+      balanced_response<Dim>(measured_[marker], moved_mm, part * measured_[marker].pace_mm, yields_);
   return {share_ * whole.force_N, share_ * whole.stiffness_N_mm};
 }
 
 template <int Dim>
-std::vector<double> WindowForces<Dim>::balance(std::span<const Vec<Dim>> positions, bool keep) {
+std::vector<double> WindowForces<Dim>::balance(std::span<const Vec<Dim>> positions, double part, bool keep) {
   std::vector<double> work_Nmm;
   for (std::size_t m = kept_N_.size(); m < measured_.size(); ++m) {
     kept_N_.push_back(share_ *
@@ -116,7 +117,7 @@ std::vector<double> WindowForces<Dim>::balance(std::span<const Vec<Dim>> positio
   for (std::size_t m = 0; m < measured_.size(); ++m) {
     if (measured_[m].stiffness_N_mm <= 0.0) continue;
     const Vec<Dim> moved = mapping_.interpolate(m, positions) - anchor_mm_[m];
-    applied_N_[m] = response(m, moved).force_N;
+    applied_N_[m] = response(m, moved, part).force_N;
     if (!keep) continue;
     // the force changes all the way
     work_Nmm.push_back(-0.5 * (kept_N_[m] + applied_N_[m]).dot(moved - applied_from_mm_[m]));
@@ -127,11 +128,12 @@ std::vector<double> WindowForces<Dim>::balance(std::span<const Vec<Dim>> positio
 }
 
 template <int Dim>
-void WindowForces<Dim>::add_stiffness(std::span<const Vec<Dim>> positions, std::span<Mat<Dim>> stiffness) const {
+void WindowForces<Dim>::add_stiffness(std::span<const Vec<Dim>> positions, double part,
+                                      std::span<Mat<Dim>> stiffness) const {
   for (std::size_t m = 0; m < measured_.size(); ++m) {
     if (measured_[m].stiffness_N_mm <= 0.0) continue;
     const Vec<Dim> moved = mapping_.interpolate(m, positions) - anchor_mm_[m];
-    const Mat<Dim> k = response(m, moved).stiffness_N_mm;
+    const Mat<Dim> k = response(m, moved, part).stiffness_N_mm;
     double sum = 0.0;
     for (const auto& s : mapping_.shares(m)) sum += std::abs(s.weight);
     for (const auto& s : mapping_.shares(m)) {

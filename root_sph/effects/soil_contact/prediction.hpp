@@ -55,12 +55,13 @@ class WindowForces {
   std::vector<std::size_t> spread(std::span<Vec<Dim>> force_N) const;
   /// Stiffness of the contacts for a root without inertia, each marker's spread over the rows of its cells: at least
   /// what acts on any motion of theirs. Adds to the first cells, as many as there are blocks.
-  void add_stiffness(std::span<const Vec<Dim>> positions, std::span<Mat<Dim>> stiffness) const;
+  void add_stiffness(std::span<const Vec<Dim>> positions, double part, std::span<Mat<Dim>> stiffness) const;
   /// Forces of markers with contacts follow their stiffness to where the cells are now. Returns what the root did since
   /// the last call against the forces until now, N mm, one number each of these markers.
   std::vector<double> follow(std::span<const Vec<Dim>> positions);
-  /// The same for a root without inertia. Where a balance is sought, nothing is kept and nothing returned.
-  std::vector<double> balance(std::span<const Vec<Dim>> positions, bool keep);
+  /// The same for a root without inertia, after a window that is this part of a whole one. Where a balance is sought,
+  /// nothing is kept and nothing returned.
+  std::vector<double> balance(std::span<const Vec<Dim>> positions, double part, bool keep);
 
   /// How the markers moved by the window's end. \param awake the cells from this one on rested
   std::vector<MarkerMotion<Dim>> motion(std::span<const Vec<Dim>> positions, std::size_t awake) const;
@@ -68,7 +69,7 @@ class WindowForces {
   std::vector<double> work_Nmm(const std::vector<MarkerMotion<Dim>>& motion) const;
 
  private:
-  ContactResponse<Dim> response(std::size_t marker, const Vec<Dim>& moved_mm) const;
+  ContactResponse<Dim> response(std::size_t marker, const Vec<Dim>& moved_mm, double part) const;
 
   SurfaceMapping<Dim> mapping_;
   std::vector<MarkerForce<Dim>> measured_;

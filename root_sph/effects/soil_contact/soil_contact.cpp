@@ -41,7 +41,7 @@ SoilContactEffect<Dim>::SoilContactEffect(Solver<Dim>& solver, SoilContactParame
   hooks.coupling.emplace_back("soil contact", [this](Tissue<Dim>&, std::vector<Vec<Dim>>& k) { bound_stiffness(k); });
   hooks.forces.emplace_back("soil contact", [this](Tissue<Dim>& t, SlipAdvance advance) { add_forces(t, advance); });
   hooks.contact_stiffness.emplace_back("soil contact", [this](Tissue<Dim>& t, std::vector<Mat<Dim>>& k) {
-    window_.add_stiffness(t.cells.position.values(), k);
+    window_.add_stiffness(t.cells.position.values(), part(), k);
   });
   hooks.surface.emplace_back("soil contact", [this](Tissue<Dim>& t) { move_markers(t); });
   hooks.exchange.emplace_back("soil", [this](Tissue<Dim>& t) { exchange(t); });
@@ -59,7 +59,7 @@ void SoilContactEffect<Dim>::begin_window(Tissue<Dim>& tissue) {
   if (exchange_.interval_begins()) exchange_.begin_interval(start_h);
   window_ = WindowForces<Dim>(
       {surface().positions(), cells.position.values(), cells.shape.values(), parameters_.map_width_cells},
-      exchange_.forces(part()), ramp(start_h + 0.5 * solver_.window_h(), parameters_.ramp_h), cells.position.values(),
+      exchange_.forces(), ramp(start_h + 0.5 * solver_.window_h(), parameters_.ramp_h), cells.position.values(),
       !parameters_.stiffness_predictor);
   const SurfaceMapping<Dim>& mapping = window_.mapping();
   std::vector<Vec<Dim>> cell_axis(cells.total());
@@ -89,7 +89,7 @@ void SoilContactEffect<Dim>::spread(Tissue<Dim>& tissue) {
 template <int Dim>
 void SoilContactEffect<Dim>::add_forces(Tissue<Dim>& tissue, SlipAdvance advance) {
   if (!tissue.inertia) {
-    root_did(window_.balance(tissue.cells.position.values(), advance.kept_h > 0.0));
+    root_did(window_.balance(tissue.cells.position.values(), part(), advance.kept_h > 0.0));
     spread(tissue);
   } else if (parameters_.stiffness_predictor) {
     root_did(window_.follow(tissue.cells.position.values()));
