@@ -199,10 +199,9 @@ std::vector<AccuracyMeasure> Run<Dim>::accuracy_measures() const {
   const bool counts = scene_.find<GrowthSection>() || model().solver.steps() == steps_at_the_end();
   std::vector<AccuracyMeasure> measures;
   if (unbalanced_.has_inertia()) {
-    measures.push_back(
-        {unbalanced_.name(), counts ? unbalanced_error_ : std::nan(""), scene_.numerics.inertia_error_max,
-         scene_.find<SoilContactSection>() ? "take a smaller numerics.step_h"
-                                           : "take a smaller numerics.step_h, or numerics.stepper = \"quasi_static\""});
+    measures.push_back({unbalanced_.name(), counts ? unbalanced_error_ : std::nan(""),
+                        scene_.numerics.inertia_error_max,
+                        "take a smaller numerics.step_h, or numerics.stepper = \"quasi_static\""});
   }
   for (const auto& effect : model().effects) {
     for (AccuracyMeasure& measure : effect->accuracy()) measures.push_back(std::move(measure));

@@ -48,6 +48,18 @@ bool BandCholesky::factor() {
   return true;
 }
 
+std::vector<double> BandCholesky::save() const {
+  std::vector<double> saved{static_cast<double>(rows_), static_cast<double>(band_)};
+  for (std::int64_t c = 0; c < rows_; ++c) saved.insert(saved.end(), column(c), column(c) + band_ + 1);
+  return saved;
+}
+
+void BandCholesky::restore(const std::vector<double>& saved) {
+  reset(static_cast<std::int64_t>(saved.at(0)), static_cast<std::int64_t>(saved.at(1)));
+  const double* from = saved.data() + 2;
+  for (std::int64_t c = 0; c < rows_; ++c, from += band_ + 1) std::copy(from, from + band_ + 1, column(c));
+}
+
 void BandCholesky::solve(Eigen::Ref<Eigen::VectorXd> x) const {
   for (std::int64_t j = 0; j < rows_; j += block) {
     const std::int64_t columns = std::min(block, rows_ - j), below = rows_below(j + columns);

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 namespace rootsoil {
 
@@ -24,6 +25,9 @@ class BandCholesky {
   bool factor();
   /// Solves with the factor, in place.
   void solve(Eigen::Ref<Eigen::VectorXd> x) const;
+  /// Matrix or factor, to the last bit.
+  std::vector<double> save() const;
+  void restore(const std::vector<double>& saved);
 
  private:
   using View = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;

@@ -225,6 +225,9 @@ class BandPreconditioner final : public Preconditioner<Dim> {
     matrix_.solve(z);
   }
 
+  std::vector<double> save() const override { return matrix_.save(); }
+  void restore(const std::vector<double>& saved) override { matrix_.restore(saved); }
+
  private:
   BandCholesky matrix_;
 };

@@ -30,6 +30,9 @@ class Preconditioner {
   virtual bool build(const Tissue<Dim>& tissue, const PairTerms<Dim>& terms, const FreeCells& free,
                      const std::vector<Mat<Dim>>& contact, double dt_h) = 0;
   virtual void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const = 0;
+  /// To go on with the same bits; empty: it is built anew in every step.
+  virtual std::vector<double> save() const { return {}; }
+  virtual void restore(const std::vector<double>& saved) { static_cast<void>(saved); }
 };
 
 /// The stiffness itself as a band along the root: two iterations a step; its cost grows with the square of the number

@@ -13,7 +13,9 @@ namespace {
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
 constexpr int most_after_balance = 8;  // iterations after the first within the force's tolerance
 constexpr int mixed_iterations = 20;
-constexpr double most_strain = 0.2;  // of a pair's distance in one iteration
+constexpr double most_strain = 0.2;      // of a pair's distance in one iteration
+constexpr double short_strain = 5e-3;    // of a pair's distance in a step after which the matrix is kept
+constexpr int most_kept_iterations = 6;  // with a matrix that was kept
 // Stability: stiffness of the softest mode over the tissue's own; displacements over a cell's size; thrust over p times
 // the held cells' faces.
 constexpr double least_stiffness = 1e-3, ample_stiffness = 0.5, small_move = 1e-3, first_move = 0.1;
@@ -119,12 +121,18 @@ Vec<Dim> across(const Vec<Dim>& axis) {
   }
 }
 
+/// Of each place, 1 where what the cell touches is stiff enough to matter beside the tissue.
 template <int Dim>
-bool same_contacts(const std::vector<Mat<Dim>>& a, const std::vector<Mat<Dim>>& b) {
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    if (a[i].isZero(0.0) != b[i].isZero(0.0)) return false;
+std::vector<std::int64_t> touched_places(const Tissue<Dim>& tissue, const FreeCells& free,
+                                         const std::vector<Mat<Dim>>& contact) {
+  constexpr double share = 0.05;  // of E_A through a cell
+  std::vector<std::int64_t> touched(free.cell.size(), 0);
+  for (std::size_t p = 0; p < touched.size() && !contact.empty(); ++p) {
+    const std::int32_t i = free.cell[p];
+    const double stiffness = tissue.material.E_axial_MPa * std::pow(tissue.cells.volume[i], 1.0 - 2.0 / Dim);
+    touched[p] = contact[i].norm() > share * stiffness;
   }
-  return a.size() == b.size();
+  return touched;
 }
 
 /// One search for a balance, with one preconditioner.
@@ -132,13 +140,18 @@ template <int Dim>
 class Search {
  public:
   using Displacements = typename QuasiStatic<Dim>::Displacements;
+  using Kept = typename QuasiStatic<Dim>::Kept;
+  using Stability = typename QuasiStatic<Dim>::Stability;
 
+  /// \param kept the preconditioner's matrix, to begin with and to keep; null: it is built, and not kept
   Search(const typename QuasiStatic<Dim>::Problem& problem, const FreeCells& free, Preconditioner<Dim>& preconditioner,
-         Displacements& displacement)
+         Kept* kept, Stability& stability, Displacements& displacement)
       : problem_(problem),
         tissue_(problem.tissue),
         free_(free),
         preconditioner_(preconditioner),
+        kept_(kept),
+        stability_(stability),
         displacement_(displacement),
         places_(std::ssize(free.cell)),
         x_(places_ * Dim),
@@ -151,6 +164,8 @@ class Search {
       sizes_[p] = std::pow(tissue_.cells.volume[free.cell[p]], 1.0 / Dim);
       faces_[p] = tissue_.cells.volume[free.cell[p]] / sizes_[p];
     }
+    built_ = kept && !kept->id.empty();
+    if (built_) touched_ = kept->is_touched;
   }
 
   /// A balance that a small push would end is left for the one that the root falls into, and one that is not found for
@@ -158,14 +173,17 @@ class Search {
   Balance run() {
     choose_start();
     iterate();
-    for (int k = 0; std::isfinite(balance_.imbalance) && pressed() && k < most_escapes; ++k) {
-      if (balance_.iterations > iterations_of_a_good_matrix && !build()) break;
+    for (int k = 0; std::isfinite(balance_.imbalance) && may_buckle() && k < most_escapes; ++k) {
+      if ((!built_ || balance_.iterations > iterations_of_a_good_matrix) && !build()) break;
+      stability_.thrust = thrust();
       const Mode mode = softest_mode();
+      stability_.stiffness = mode.stiffness;
       balance_.stable = mode.stiffness > least_stiffness;
       if (balance_.found ? balance_.stable : mode.stiffness > ample_stiffness) break;
       follow(mode);
       iterate();
     }
+    if (kept_ && largest_pair_strain<Dim>(tissue_, free_, x_) > short_strain) *kept_ = {};
     put(x_);
     return balance_;
   }
@@ -225,8 +243,16 @@ class Search {
   }
 
   bool build() {
-    touching_ = problem_.contact();
-    return preconditioner_.build(tissue_, problem_.terms, free_, touching_, problem_.dt_h);
+    const std::vector<Mat<Dim>> touching = problem_.contact();
+    touched_ = touched_places<Dim>(tissue_, free_, touching);
+    if (kept_) *kept_ = {};
+    built_ = preconditioner_.build(tissue_, problem_.terms, free_, touching, problem_.dt_h);
+    fresh_ = true;
+    if (!built_ || !kept_) return built_;
+    for (const std::int32_t i : free_.cell) kept_->id.push_back(tissue_.cells.cell_id[i]);
+    kept_->is_touched = touched_;
+    kept_->dt_h = problem_.dt_h;
+    return true;
   }
 
   /// Quasi-Newton iterations, mixed, until forces and what they still want to move are small. What moves for long under
@@ -257,7 +283,9 @@ class Search {
         best_x = x_;
         halvings = 0;
       }
-      if (k == 0 || (rebuilds < most_rebuilds && !same_contacts<Dim>(problem_.contact(), touching_))) {
+      const bool too_old = !fresh_ && k >= most_kept_iterations;
+      if (!built_ || too_old ||
+          (rebuilds < most_rebuilds && touched_places<Dim>(tissue_, free_, problem_.contact()) != touched_)) {
         if (!build()) return;
         ++rebuilds;
         mixing.forget();
@@ -289,16 +317,28 @@ class Search {
     return step;
   }
 
-  /// Whether the held base is pressed: nothing else bends a straight root.
-  bool pressed() const {
+  /// Force on the held base against the root's growth, N: nothing else bends a straight root.
+  double thrust() const {
     const auto& cells = tissue_.cells;
-    double thrust = 0.0, section = 0.0;
+    double sum = 0.0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (!cells.clamped[i]) continue;
-      thrust -= tissue_.force[i].dot(cells.frame[i].col(0));
-      section += std::pow(cells.volume[i], (Dim - 1.0) / Dim);
+      if (cells.clamped[i]) sum -= tissue_.force[i].dot(cells.frame[i].col(0));
     }
-    return thrust > least_thrust * stress_scale<Dim>(tissue_) * section;
+    return sum;
+  }
+
+  /// Whether the root is pressed, and so much that its softest mode is to be looked at: with a new matrix, where none
+  /// was found, and where it would be soft if it lost stiffness as a column does, 1 - P/P_Euler.
+  bool may_buckle() const {
+    const auto& cells = tissue_.cells;
+    double section = 0.0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells.clamped[i]) section += std::pow(cells.volume[i], (Dim - 1.0) / Dim);
+    }
+    const double now = thrust();
+    if (now <= least_thrust * stress_scale<Dim>(tissue_) * section) return false;
+    if (fresh_ || !balance_.found || stability_.thrust <= 0.0) return true;
+    return 1.0 - (1.0 - stability_.stiffness) * now / stability_.thrust < ample_stiffness;
   }
 
   /// What a load from the side does, and two steps of the power method on 1 - M^-1 K from there, whose largest
@@ -346,6 +386,7 @@ class Search {
     for (int k = 0; k < most_held; ++k) {
       x_ = far.size() == 0 ? Eigen::VectorXd(near + way * mode.v)
                            : Eigen::VectorXd(near + pull_near / (pull_near - pull_far) * (far - near));
+      built_ = false;
       iterate();
       if (!balance_.found || std::abs(pull_) * move_of_one <= problem_.tolerance) break;
       if (side * pull_ < 0.0) {
@@ -366,10 +407,13 @@ class Search {
   const Tissue<Dim>& tissue_;
   const FreeCells& free_;
   Preconditioner<Dim>& preconditioner_;
+  Kept* kept_;
+  Stability& stability_;
   Displacements& displacement_;
   Eigen::Index places_;
   Eigen::VectorXd x_, r_, z_, sizes_, faces_;
-  std::vector<Mat<Dim>> touching_;
+  std::vector<std::int64_t> touched_;
+  bool built_ = false, fresh_ = false;  ///< there is a matrix; it is of this search
   const Mode* held_ = nullptr;
   double pull_ = 0.0;  ///< amplitude that the held mode's force would add
   Balance balance_;
@@ -379,25 +423,65 @@ class Search {
 
 template <int Dim>
 Balance QuasiStatic<Dim>::solve(const Problem& problem, Displacements& displacement) {
-  if (!band_) {
-    band_ = make_band_preconditioner<Dim>();
-    layers_ = make_layer_preconditioner<Dim>();
-  }
-  const FreeCells free = order_free_cells<Dim>(problem.tissue.cells);
-  const auto search_with = [&](Preconditioner<Dim>& preconditioner) {
-    return Search<Dim>(problem, free, preconditioner, displacement).run();
+  const std::optional<FreeCells> known = kept_places(problem.tissue, problem.dt_h);
+  if (!known) kept_ = {};
+  const FreeCells free = known ? *known : order_free_cells<Dim>(problem.tissue.cells);
+  const auto search_with = [&](Preconditioner<Dim>& preconditioner, Kept* kept) {
+    return Search<Dim>(problem, free, preconditioner, kept, stability_, displacement).run();
   };
   if constexpr (Dim == 2) {
-    return search_with(*band_);
+    return search_with(*band_, &kept_);
   } else {
     const double work = band_work<Dim>(problem.tissue.pairs, free);
-    if (work < little_work) return search_with(*band_);
+    if (work < little_work) return search_with(*band_, &kept_);
     const Displacements guess = displacement;
-    const Balance balance = search_with(*layers_);
+    const Balance balance = search_with(*layers_, nullptr);
     if (balance.found || work >= most_work) return balance;
     displacement = guess;
-    return search_with(*band_);
+    return search_with(*band_, nullptr);
   }
+}
+
+/// The free cells in the order of the kept matrix; absent: it serves no more.
+template <int Dim>
+std::optional<FreeCells> QuasiStatic<Dim>::kept_places(const Tissue<Dim>& tissue, double dt_h) const {
+  const auto& cells = tissue.cells;
+  if (kept_.id.empty() || kept_.dt_h != dt_h) return {};
+  std::vector<std::int32_t> cell_of(static_cast<std::size_t>(tissue.next_cell_id), -1);
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells.clamped[i]) continue;
+    cell_of[static_cast<std::size_t>(cells.cell_id[i])] = static_cast<std::int32_t>(i);
+    ++number;
+  }
+  if (number != kept_.id.size()) return {};
+  FreeCells free;
+  free.place.assign(cells.size(), -1);
+  for (const std::int64_t id : kept_.id) {
+    const std::int32_t i = cell_of[static_cast<std::size_t>(id)];
+    if (i < 0) return {};
+    free.place[i] = static_cast<std::int32_t>(free.cell.size());
+    free.cell.push_back(i);
+  }
+  return free;
+}
+
+template <int Dim>
+void QuasiStatic<Dim>::save(std::map<std::string, std::vector<double>>& reals,
+                            std::map<std::string, std::vector<std::int64_t>>& integers) const {
+  integers["balance/places"] = kept_.id;
+  integers["balance/touched"] = kept_.is_touched;
+  reals["balance/dt_h"] = {kept_.dt_h};
+  reals["balance/matrix"] = kept_.id.empty() ? std::vector<double>{} : band_->save();
+  reals["balance/stability"] = {stability_.stiffness, stability_.thrust};
+}
+
+template <int Dim>
+void QuasiStatic<Dim>::restore(const std::map<std::string, std::vector<double>>& reals,
+                               const std::map<std::string, std::vector<std::int64_t>>& integers) {
+  kept_ = {integers.at("balance/places"), integers.at("balance/touched"), reals.at("balance/dt_h").at(0)};
+  if (!kept_.id.empty()) band_->restore(reals.at("balance/matrix"));
+  stability_ = {reals.at("balance/stability").at(0), reals.at("balance/stability").at(1)};
 }
 
 template class QuasiStatic<2>;

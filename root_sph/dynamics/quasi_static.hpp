@@ -3,7 +3,10 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "root_sph/dynamics/preconditioner.hpp"
@@ -44,8 +47,30 @@ class QuasiStatic {
   /// \param displacement first guess in, solution out; zero on held cells
   Balance solve(const Problem& problem, Displacements& displacement);
 
+  /// What is kept.
+  void save(std::map<std::string, std::vector<double>>& reals,
+            std::map<std::string, std::vector<std::int64_t>>& integers) const;
+  void restore(const std::map<std::string, std::vector<double>>& reals,
+               const std::map<std::string, std::vector<std::int64_t>>& integers);
+
+  /// The matrix of an earlier, short step: it serves as long as the same cells are free.
+  struct Kept {
+    std::vector<std::int64_t> id;          ///< of the cell of each place; empty: there is none
+    std::vector<std::int64_t> is_touched;  ///< of each place
+    double dt_h = 0.0;
+  };
+  /// What the softest mode was found to be when it was looked at last, and the thrust on the base then, N.
+  struct Stability {
+    double stiffness = 1.0, thrust = 0.0;
+  };
+
  private:
-  std::unique_ptr<Preconditioner<Dim>> band_, layers_;  ///< kept for their memory
+  std::optional<FreeCells> kept_places(const Tissue<Dim>& tissue, double dt_h) const;
+
+  std::unique_ptr<Preconditioner<Dim>> band_ = make_band_preconditioner<Dim>(),
+                                       layers_ = make_layer_preconditioner<Dim>();
+  Kept kept_;  ///< of the band
+  Stability stability_;
 };
 
 extern template class QuasiStatic<2>;

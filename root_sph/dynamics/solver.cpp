@@ -369,9 +369,13 @@ void Solver<Dim>::save(std::map<std::string, std::vector<double>>& reals,
                        std::map<std::string, std::vector<std::int64_t>>& integers) const {
   reals["solver/axis"] = axis_.save();
   reals["solver/shortest_step_h"] = {shortest_step_h_};
-  integers["solver/counters"] = {steps_, tissue_.next_cell_id,
+  if (!tissue_.inertia) quasi_static_.save(reals, integers);
+  integers["solver/counters"] = {steps_,
+                                 tissue_.next_cell_id,
                                  static_cast<std::int64_t>(tissue_.cells.total() - tissue_.cells.size()),
-                                 effort_.balance_iterations, effort_.force_evaluations, effort_.unstable_steps};
+                                 effort_.balance_iterations,
+                                 effort_.force_evaluations,
+                                 effort_.unstable_steps};
   if (!terms_.non_affine) return;
   std::vector<std::int64_t>& index = integers["solver/slip_pairs"];
   std::vector<double>& slip = reals["solver/slip_mm"];
@@ -392,6 +396,7 @@ void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& real
                           const std::map<std::string, std::vector<std::int64_t>>& integers) {
   axis_.restore(reals.at("solver/axis"));
   shortest_step_h_ = reals.at("solver/shortest_step_h").at(0);
+  if (!tissue_.inertia) quasi_static_.restore(reals, integers);
   const auto& counters = integers.at("solver/counters");
   steps_ = counters.at(0);
   tissue_.next_cell_id = counters.at(1);

@@ -73,9 +73,9 @@ double automatic_step_h(const Scene& scene) {
   const double length = scene.root.is_lattice() ? scene.root.length_mm : 0.5;
   const double speed = fastest_tip_speed_mm_h<Dim>(scene);
   if (!scene.numerics.has_inertia()) {
-    if (speed <= 0.0) return scene.output.every_h;
+    if (speed <= 0.0) return std::min(scene.output.every_h, scene.facts.longest_step_h);
     const double peak_rate = closed_form_flow<Dim>(scene, length, scene.facts.pressure_MPa[1]).peak_rate_per_h;
-    const double growth_h = rule.growth_per_step / peak_rate;
+    const double growth_h = std::min(rule.growth_per_step / peak_rate, scene.facts.longest_step_h);
     return scene.facts.can_be_arrested ? std::min(growth_h, rule.contact_cells_per_step * size / speed) : growth_h;
   }
   if (speed > 0.0) {

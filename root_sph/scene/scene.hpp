@@ -7,6 +7,7 @@
 #include <any>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -126,6 +127,8 @@ struct SceneFacts {
   /// Names of the effects that push the root from outside.
   std::vector<std::string> pushed_by;
   bool can_be_arrested = false;  ///< one of them can stop its growth
+  /// Between two exchanges with what is computed elsewhere, h.
+  double longest_step_h = std::numeric_limits<double>::infinity();
 };
 
 /// Eq. 7 for one section: its keys that follow the pressure differential, by name.

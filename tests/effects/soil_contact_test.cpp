@@ -133,6 +133,46 @@ TEST(Exchange, MarkersTellHowTheyMovedOverTheIntervalAndKeepTheAnswer) {
   EXPECT_EQ(exchange.forces()[3].stiffness_N_mm, 2.0);
 }
 
+/// Steps without inertia may be cut: two halves are a window.
+TEST(Exchange, PartsOfWindowsMakeAWhole) {
+  auto port = std::make_unique<Tie>();
+  const Tie& tie = *port;
+  SoilExchange<2> exchange(row_of_markers(), std::move(port), {2, false, {}});
+  exchange.begin_interval(1.0);
+  const std::vector<MarkerMotion<2>> part(4, {Vec<2>(0.01, 0.0), Spin<2>(0.0)});
+  for (const double share : {0.5, 0.25, 0.25, 0.5}) {
+    exchange.move(part, share);
+    EXPECT_FALSE(exchange.interval_ends());
+    EXPECT_FALSE(exchange.interval_begins());
+  }
+  exchange.move(part, 0.5);
+  ASSERT_TRUE(exchange.interval_ends());
+  exchange.advance(1.5);
+  EXPECT_NEAR(tie.heard.at(0).end_mm[0][0] - tie.heard.at(0).start_mm[0][0], 0.05, 1e-15);
+}
+
+/// The mean over the latest three intervals or so; where a marker should be by now, and by the end of a part of a
+/// window.
+TEST(Exchange, MarkersHaveAMeanPace) {
+  SoilExchange<2> exchange(row_of_markers(), std::make_unique<Tie>(), {2, false, {}});
+  double pace_mm = 0.0, time_h = 0.0;
+  for (int interval = 0; interval < 30; ++interval) {
+    const double path_mm = interval % 3 == 0 ? 0.04 : 0.01;
+    pace_mm += (path_mm - pace_mm) / std::min(interval + 1, 3);
+    exchange.begin_interval(time_h);
+    for (int k = 0; k < 2; ++k) {
+      exchange.move(std::vector<MarkerMotion<2>>(4, {Vec<2>(0.5 * path_mm, 0.0), Spin<2>(0.0)}));
+    }
+    exchange.advance(time_h += 0.1);
+  }
+  exchange.begin_interval(time_h);
+  exchange.move(std::vector<MarkerMotion<2>>(4, {Vec<2>(0.007, 0.0), Spin<2>(0.0)}));
+  const MarkerForce<2> force = exchange.forces()[2];
+  EXPECT_NEAR(force.moved_mm[0], 0.5 * 0.01 + 0.007, 1e-14);
+  EXPECT_NEAR(force.expected_mm[0], (0.5 + 0.5) * pace_mm, 1e-14);
+  EXPECT_NEAR(force.pace_mm[0], 0.5 * pace_mm, 1e-14);
+}
+
 TEST(Exchange, SavedAndRestoredInsideAnIntervalItGoesOnAlike) {
   const auto window = [](double times) {
     return std::vector<MarkerMotion<2>>(4, {times * Vec<2>(0.01, 0.02), Spin<2>(0.1)});
@@ -254,6 +294,97 @@ TEST(WindowForces, FollowedForcesGrowWithTheWaySinceTheyWereMeasured) {
   EXPECT_LT((window.applied_N()[0] - 0.5 * Vec<2>(-2.0 - 100.0 * 0.015, 0.0)).norm(), 1e-12);
   // told already: what is left of the window's work is nothing
   EXPECT_NEAR(window.work_Nmm(window.motion(moved, moved.size()))[0], 0.0, 1e-15);
+}
+
+MarkerForce<2> measured(const Vec<2>& force_N, double stiffness_N_mm) {
+  MarkerForce<2> m;
+  m.force_N = force_N;
+  m.stiffness_N_mm = stiffness_N_mm;
+  m.moved_mm = {0.004, 0.001};
+  m.expected_mm = {0.003, 0.003};
+  return m;
+}
+
+TEST(BalancedResponse, AlongTheForceAWallHasItsStiffnessAndGrainsYieldToTheMeanPace) {
+  const MarkerForce<2> m = measured({-2.0, 0.0}, 100.0);
+  const Vec<2> moved(0.006, 0.002), pace(0.002, 0.0);
+  EXPECT_NEAR(balanced_response<2>(m, moved, pace, false).force_N[0], -(2.0 + 100.0 * 0.010), 1e-13);
+  EXPECT_NEAR(balanced_response<2>(m, moved, pace, true).force_N[0], -(2.0 + 100.0 * 0.005), 1e-13);
+  // across: 0.003 mm came, 0.003 were to come
+  EXPECT_NEAR(balanced_response<2>(m, moved, pace, true).force_N[1], 0.0, 1e-13);
+  EXPECT_NEAR(balanced_response<2>(m, {0.006, -0.003}, pace, true).force_N[1], 100.0 * 0.005, 1e-13);
+  // it never pulls, holds with no more than its size, and where there is no force there is no contact
+  EXPECT_EQ(balanced_response<2>(m, {-1.0, 0.002}, pace, true).force_N[0], 0.0);
+  EXPECT_NEAR(balanced_response<2>(m, {0.006, -1.0}, pace, true).force_N[1], 2.0, 1e-13);
+  EXPECT_EQ(balanced_response<2>(measured({0.0, 0.0}, 100.0), moved, pace, true).force_N, Vec<2>(0.0, 0.0));
+}
+
+TEST(BalancedResponse, StiffnessIsItsDerivative) {
+  const MarkerForce<2> m = measured({-2.0, 1.0}, 100.0);
+  constexpr double d = 1e-6;
+  for (const Vec<2>& at : {Vec<2>(0.006, 0.002), Vec<2>(-1.0, -2.0), Vec<2>(-0.1, 0.0)}) {
+    const ContactResponse<2> response = balanced_response<2>(m, at, Vec<2>(0.002, 0.0), true);
+    for (int a = 0; a < 2; ++a) {
+      const auto force = [&](double by) {
+        return balanced_response<2>(m, at + by * Vec<2>::Unit(a), Vec<2>(0.002, 0.0), true).force_N;
+      };
+      const Vec<2> slope = (force(-d) - force(d)) / (2.0 * d);
+      // a force that is held at its size still turns nothing: its stiffness is none
+      EXPECT_LT((slope - response.stiffness_N_mm.col(a)).norm(), 1e-6) << at.transpose() << ", " << a;
+    }
+  }
+}
+
+/// What is only tried leaves no work behind; what is kept does the mean of its forces times the way.
+TEST(WindowForces, ABalanceThatIsSoughtCountsOnceItIsFound) {
+  const Block block;
+  WindowForces<2> window = block.forces(0.5, {measured({-2.0, 0.0}, 100.0), MarkerForce<2>{}});
+  const auto moved_by = [&](double dx) {
+    std::vector<Vec<2>> moved = block.cells;
+    for (Vec<2>& x : moved) x[0] += dx;
+    return moved;
+  };
+  EXPECT_TRUE(window.balance(moved_by(0.3), 1.0, false).empty());
+  EXPECT_TRUE(window.balance(moved_by(-0.3), 1.0, false).empty());
+  EXPECT_EQ(window.applied_N()[0][0], 0.0);
+  const Reals work = window.balance(moved_by(0.005), 1.0, true);
+  const double before_N = 0.5 * (2.0 + 100.0 * 0.001), after_N = 0.5 * (2.0 + 100.0 * 0.006);
+  ASSERT_EQ(work.size(), 1u);
+  EXPECT_NEAR(window.applied_N()[0][0], -after_N, 1e-12);
+  EXPECT_NEAR(work[0], 0.5 * (before_N + after_N) * 0.005, 1e-14);
+  EXPECT_NEAR(window.work_Nmm(window.motion(moved_by(0.005), block.cells.size()))[0], 0.0, 1e-15);
+}
+
+/// A step that is cut takes a marker half as far: at that pace grains answer as before.
+TEST(WindowForces, AtTheMeanPaceGrainsAnswerAsBeforeHoweverAStepIsCut) {
+  const Block block;
+  MarkerForce<2> m = measured({-2.0, 0.5}, 100.0);
+  m.moved_mm = m.expected_mm;
+  m.pace_mm = {0.006, -0.002};
+  for (const double part : {1.0, 0.5, 0.25}) {
+    WindowForces<2> window = block.forces(1.0, {m, MarkerForce<2>{}});
+    std::vector<Vec<2>> moved = block.cells;
+    for (Vec<2>& x : moved) x += part * m.pace_mm;
+    window.balance(moved, part, true);
+    EXPECT_LT((window.applied_N()[0] - m.force_N).norm(), 1e-12) << part;
+  }
+}
+
+/// Spread by rows it is at least phi_i k phi_j: for the same motion of all cells it is the contact's own.
+TEST(WindowForces, StiffnessWithoutInertiaBoundsTheContacts) {
+  Block block;
+  block.markers[1] = {-0.08, 0.18};  // outside, where some weights are negative
+  const WindowForces<2> window = block.forces(0.5, {MarkerForce<2>{}, measured({-2.0, 1.0}, 80.0)});
+  std::vector<Mat<2>> rows(36, Mat<2>::Zero());
+  window.add_stiffness(block.cells, 1.0, rows);
+  Mat<2> total = Mat<2>::Zero();
+  for (const Mat<2>& k : rows) total += k;
+  double magnitudes = 0.0;
+  for (const auto& s : window.mapping().shares(1)) magnitudes += std::abs(s.weight);
+  EXPECT_LT((total - 0.5 * 80.0 * magnitudes * magnitudes * Mat<2>::Identity()).norm(), 1e-11);
+  std::vector<Mat<2>> first(3, Mat<2>::Zero());  // the other cells rest
+  window.add_stiffness(block.cells, 1.0, first);
+  EXPECT_EQ(first[2], rows[2]);
 }
 
 // ---- bookkeeping ----------------------------------------------------------------------------------

@@ -25,11 +25,11 @@ namespace rootsoil::physics {
 /// What rounding leaves of a sum of forces that cancel, over the sum of their sizes: 1e-17 to 3e-16 are measured.
 inline constexpr double rounding_of_balance = 1e-15;
 
-/// Unless they choose a stepper themselves, with inertia: its errors are what most tests of this folder measure.
-inline std::vector<std::string> with_inertia(std::vector<std::string> overrides) {
+/// Unless text or overrides choose a stepper, with inertia: its errors are what most tests of this folder measure.
+inline std::vector<std::string> with_inertia(const std::string& text, std::vector<std::string> overrides) {
   const bool chooses = std::any_of(overrides.begin(), overrides.end(),
                                    [](const std::string& o) { return o.starts_with("numerics.stepper="); });
-  if (!chooses) overrides.push_back("numerics.stepper=symplectic");
+  if (!chooses && text.find("\nstepper = ") == std::string::npos) overrides.push_back("numerics.stepper=symplectic");
   return overrides;
 }
 
@@ -38,7 +38,7 @@ template <int Dim>
 class SceneRun {
  public:
   explicit SceneRun(const std::string& text, const std::vector<std::string>& overrides = {})
-      : scene(parse_scene(text, "test.toml", with_inertia(overrides))),
+      : scene(parse_scene(text, "test.toml", with_inertia(text, overrides))),
         model(build_model<Dim>(scene)),
         solver(model->solver),
         tissue(solver.tissue()) {

@@ -35,10 +35,8 @@ mature_at_mm = 0.36
 mature_width_mm = 0.06
 [non_affine_control]
 [numerics]
-stepper = "symplectic"
-step_h = 5e-5
-midline_damping_per_h = 0
-mass_damping_per_h = 15
+stepper = "quasi_static"
+step_h = 2e-3
 [output]
 every_h = 1
 )",

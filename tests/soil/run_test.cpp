@@ -27,15 +27,14 @@ Scene coupled(Scene scene) {
   SoilContactSection contact;
   contact.stiffness_predictor = true;
   contact.ramp_h = 0.0;
-  contact.interval_h = 3 * scene.numerics.window_steps * *scene.numerics.step_h;
+  contact.interval_h = 3 * scene.numerics.steps_a_window() * *scene.numerics.step_h;
   scene.all<SoilContactSection>().push_back(contact);
   return scene;
 }
 
 Scene contact_scene() {
   return coupled(parse_scene(scene_text, "test.toml",
-                             {"scene.duration_h=0.4", "numerics.window_steps=5", "output.every_h=0.1",
-                              "output.checkpoint_every_h=0.1", "numerics.step_h=2e-4"}));
+                             {"scene.duration_h=0.4", "output.every_h=0.1", "output.checkpoint_every_h=0.1"}));
 }
 
 /// A plate that the root meets after some 0.06 h.
@@ -123,7 +122,7 @@ TEST(SoilRun, ResumesInContactBitForBit) {
 /// Half of the root sleeps before it meets the plate, and is woken by it.
 TEST(SoilRun, ResumesAsleepBitForBit) {
   const Scene scene =
-      coupled(parse_scene(scene_text + "[sleep]\n", "test.toml",
+      coupled(parse_scene(text_with_inertia + "[sleep]\n", "test.toml",
                           {"scene.duration_h=0.4", "root.length_mm=2.4", "numerics.window_steps=5",
                            "output.every_h=0.02", "output.checkpoint_every_h=0.1", "numerics.step_h=2e-4"}));
   const TemporaryFolder folder;

@@ -65,7 +65,8 @@ TEST(SoilSleep, ThrustAndGrowthAreThoseOfTheRootThatIsAwake) {
     p.friction = 0.5;
     return std::make_unique<twins::HalfSpace>(p);
   };
-  SoilRun<2> awake(overrides, predicting(), make), asleep(overrides, predicting(), make, scene_text + "[sleep]\n");
+  SoilRun<2> awake(overrides, predicting(), make, text_with_inertia),
+      asleep(overrides, predicting(), make, text_with_inertia + "[sleep]\n");
   double share = 0.0, windows = 0.0, imbalance = 0.0;
   const auto watch = [&] {
     share += static_cast<double>(at_rest(asleep)) / static_cast<double>(asleep.tissue.cells.total());
@@ -111,7 +112,7 @@ SoilRun<Dim> pressed(double before_N, double after_N, double lower_share, const 
           return Vec3{0.0, -force_N * x[1] / radius_mm, -force_N * x[2] / radius_mm};
         });
       },
-      scene_text + "[sleep]\n");
+      text_with_inertia + "[sleep]\n");
 }
 
 /// What acts on markers over cells at rest is part of the balance, and those markers stand where they are, with their
@@ -191,7 +192,7 @@ TEST(SoilSleep, AForceOnTissueAtRestWakesIt) {
 TEST(SoilSleep, ARootThatNeverSleepsHasNoColumnForIt) {
   const auto make = [](const Scene& s) { return std::make_unique<twins::HalfSpace>(plate(s, 10.0, 100.0)); };
   EXPECT_EQ(SoilRun<2>({}, {}, make).tissue.cells.find("soil force asleep"), nullptr);
-  EXPECT_NE(SoilRun<2>({}, {}, make, scene_text + "[sleep]\n").tissue.cells.find("soil force asleep"), nullptr);
+  EXPECT_NE(SoilRun<2>({}, {}, make, text_with_inertia + "[sleep]\n").tissue.cells.find("soil force asleep"), nullptr);
 }
 
 }  // namespace

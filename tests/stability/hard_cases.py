@@ -129,7 +129,7 @@ def slender(length_mm: float, friction: float) -> Changes:
     return {**SLENDER, "root.length_mm": length_mm, "obstacle": [plane(length_mm + 0.01, 90.0, friction=friction)]}
 
 
-# A root that soil's plate stops, with inertia: steps that end in balance do not meet soil yet.
+# A root that soil's plate stops, with inertia: docs/stability.md was measured so.
 INERTIA: Changes = {"numerics": {"stepper": "symplectic", "step_h": 1e-4}}
 
 # A root 6 across among some 50 grains of a third of its width, as scenarios/soil_tutorial.toml.

@@ -62,8 +62,9 @@ int command_line(int argc, char** argv) {
   }
   Scene scene = read_scene(scene_file);
   SoilContactSection contact;
-  contact.interval_h = *scene.numerics.step_h;  // a window an interval
-  contact.ramp_h = 0.0;                         // the root starts out of contact
+  contact.interval_h = scene.numerics.step_h.value_or(contact.interval_h);  // a window an interval
+  contact.ramp_h = 0.0;                                                     // the root starts out of contact
+  scene.facts.longest_step_h = contact.interval_h;
   contact.stiffness_predictor = true;
   scene.all<SoilContactSection>().push_back(contact);
   return run_scene(scene, options, [gone_at_h](const Scene& read, const SoilStart&) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
@@ -13,6 +14,11 @@
 #include "root_sph/exchange/under_relaxation.hpp"
 
 namespace rootsoil {
+namespace {
+
+constexpr double pace_intervals = 3.0;  // over which a marker's mean path is taken
+
+}  // namespace
 
 template <int Dim>
 std::vector<MarkerAnswer<Dim>> checked_answer(const SurfaceMotion& motion, const SurfaceForces& answer) {
@@ -51,6 +57,8 @@ void SoilExchange<Dim>::Load::for_each_number(Visit&& visit) {
   all(start_mm);
   all(angle);
   all(path_mm);
+  all(pace_mm);
+  visit(intervals);
   visit(in_soil);
 }
 
@@ -89,30 +97,37 @@ void SoilExchange<Dim>::begin_interval(double time_h) {
 
 template <int Dim>
 std::vector<MarkerForce<Dim>> SoilExchange<Dim>::forces() const {
+  const double whole = parameters_.windows_per_interval;
   std::vector<MarkerForce<Dim>> forces;
   forces.reserve(load_.size());
   for (std::size_t m = 0; m < load_.size(); ++m) {
     const Load& load = load_[m];
     forces.push_back({load.force_N, load.torque_Nmm, load.stiffness_N_mm,
-                      0.5 * load.path_mm + surface_.positions()[m] - load.start_mm});
+                      0.5 * load.path_mm + surface_.positions()[m] - load.start_mm,
+                      (0.5 + windows_done_ / whole) * load.pace_mm, load.pace_mm / whole});
   }
   return forces;
 }
 
 template <int Dim>
-void SoilExchange<Dim>::move(const std::vector<MarkerMotion<Dim>>& motion) {
+void SoilExchange<Dim>::move(const std::vector<MarkerMotion<Dim>>& motion, double part) {
   ROOTSOIL_ASSERT(motion.size() == load_.size());
   for (std::size_t m = 0; m < load_.size(); ++m) {
     surface_.positions()[m] += motion[m].moved_mm;
     load_[m].angle += motion[m].turned;
   }
-  ++windows_done_;
+  windows_done_ += part;
 }
 
 template <int Dim>
 std::vector<double> SoilExchange<Dim>::advance(double time_h) {
   windows_done_ = 0;
-  for (std::size_t m = 0; m < load_.size(); ++m) load_[m].path_mm = surface_.positions()[m] - load_[m].start_mm;
+  for (std::size_t m = 0; m < load_.size(); ++m) {
+    Load& load = load_[m];
+    load.path_mm = surface_.positions()[m] - load.start_mm;
+    load.intervals = std::min(load.intervals + 1.0, pace_intervals);
+    load.pace_mm += (load.path_mm - load.pace_mm) / load.intervals;
+  }
   const std::vector<std::size_t> markers = markers_in_soil();
   const SurfaceMotion told = motion(markers, time_h);
   ++interval_;
@@ -185,8 +200,7 @@ void SoilExchange<Dim>::save(std::map<std::string, std::vector<double>>& reals) 
   surface_.save("soil/marker/", reals);
   std::vector<double>& load = reals["soil/marker/load"];
   for (Load l : load_) l.for_each_number([&](double& x) { load.push_back(x); });
-  reals["soil/interval"] = {static_cast<double>(interval_), static_cast<double>(windows_done_), interval_start_h_,
-                            relaxation_};
+  reals["soil/interval"] = {static_cast<double>(interval_), windows_done_, interval_start_h_, relaxation_};
   std::vector<double>& numbers = reals["soil/numbers"];
   for (const auto& [name, value] : numbers_) numbers.push_back(value);
 }
@@ -200,7 +214,7 @@ void SoilExchange<Dim>::restore(const std::map<std::string, std::vector<double>>
   for (Load& l : load_) l.for_each_number([&](double& x) { x = loads.at(at++); });
   const std::vector<double>& interval = reals.at("soil/interval");
   interval_ = static_cast<std::int64_t>(interval.at(0));
-  windows_done_ = static_cast<int>(interval.at(1));
+  windows_done_ = interval.at(1);
   interval_start_h_ = interval.at(2);
   relaxation_ = interval.at(3);
   at = 0;

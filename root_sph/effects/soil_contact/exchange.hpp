@@ -47,8 +47,9 @@ class SoilExchange {
   void begin_interval(double time_h);
   /// One a marker.
   std::vector<MarkerForce<Dim>> forces() const;
-  /// Markers go with the tissue; a window is over.
-  void move(const std::vector<MarkerMotion<Dim>>& motion);
+  /// Markers go with the tissue; a window is over. \param part that it was of a whole one: a step without inertia may
+  /// be cut into halves, quarters, ...
+  void move(const std::vector<MarkerMotion<Dim>>& motion, double part = 1.0);
   /// Tells the soil how the markers moved until now and takes its forces for the next interval. Returns the work that
   /// the soil received at each of the markers it knows, by its own forces, N mm.
   std::vector<double> advance(double time_h);
@@ -73,6 +74,8 @@ class SoilExchange {
     Vec<Dim> start_mm = Vec<Dim>::Zero();    ///< at the interval's start
     Spin<Dim> angle = Spin<Dim>::Zero();     ///< turned since then
     Vec<Dim> path_mm = Vec<Dim>::Zero();     ///< of the interval before
+    Vec<Dim> pace_mm = Vec<Dim>::Zero();     ///< path of an interval, mean over the latest ones
+    double intervals = 0.0;                  ///< in that mean
     double in_soil = 0.0;                    ///< 1 where the port knows the marker
 
     template <class Visit>
@@ -88,7 +91,7 @@ class SoilExchange {
   MaterialSurface<Dim> surface_;
   std::vector<Load> load_;  ///< one a marker
   std::int64_t interval_ = 0;
-  int windows_done_ = 0;  ///< of the interval under way
+  double windows_done_ = 0.0;  ///< of the interval under way
   double interval_start_h_ = 0.0;
   double relaxation_ = 1.0;
   std::map<std::string, double> numbers_;

@@ -37,19 +37,30 @@ SoilContactEffect<Dim>::SoilContactEffect(Solver<Dim>& solver, SoilContactParame
     parameters_.tip_length_mm = 2.0 * shape.radius_mm();
   }
   Hooks<Dim>& hooks = solver.hooks();
-  hooks.coupling.emplace_back("soil contact", [this](Tissue<Dim>& t, std::vector<Vec<Dim>>& k) { begin_window(t, k); });
-  hooks.forces.emplace_back("soil contact", [this](Tissue<Dim>& t, SlipAdvance) { add_forces(t); });
+  hooks.pair_history.emplace_back("soil contact", [this](Tissue<Dim>& t) { begin_window(t); });
+  hooks.coupling.emplace_back("soil contact", [this](Tissue<Dim>&, std::vector<Vec<Dim>>& k) { bound_stiffness(k); });
+  hooks.forces.emplace_back("soil contact", [this](Tissue<Dim>& t, SlipAdvance advance) { add_forces(t, advance); });
+  hooks.contact_stiffness.emplace_back("soil contact", [this](Tissue<Dim>& t, std::vector<Mat<Dim>>& k) {
+    window_.add_stiffness(t.cells.position.values(), part(), k);
+  });
   hooks.surface.emplace_back("soil contact", [this](Tissue<Dim>& t) { move_markers(t); });
   hooks.exchange.emplace_back("soil", [this](Tissue<Dim>& t) { exchange(t); });
 }
 
 template <int Dim>
-void SoilContactEffect<Dim>::begin_window(Tissue<Dim>& tissue, std::vector<Vec<Dim>>& stiffness) {
+double SoilContactEffect<Dim>::part() const {
+  return solver_.tissue().inertia ? 1.0 : solver_.window_h() / solver_.options().step_h;
+}
+
+template <int Dim>
+void SoilContactEffect<Dim>::begin_window(Tissue<Dim>& tissue) {
   const auto& cells = tissue.cells;
-  if (exchange_.interval_begins()) exchange_.begin_interval(tissue.time_h);
+  const double start_h = tissue.inertia ? tissue.time_h : tissue.time_h - solver_.window_h();
+  if (exchange_.interval_begins()) exchange_.begin_interval(start_h);
   window_ = WindowForces<Dim>(
       {surface().positions(), cells.position.values(), cells.shape.values(), parameters_.map_width_cells},
-      exchange_.forces(), ramp(tissue.time_h + 0.5 * solver_.window_h(), parameters_.ramp_h), cells.position.values());
+      exchange_.forces(), ramp(start_h + 0.5 * solver_.window_h(), parameters_.ramp_h), cells.position.values(),
+      !parameters_.stiffness_predictor);
   const SurfaceMapping<Dim>& mapping = window_.mapping();
   std::vector<Vec<Dim>> cell_axis(cells.total());
   for (std::size_t i = 0; i < cells.total(); ++i) cell_axis[i] = cells.frame[i].col(0);
@@ -59,6 +70,10 @@ void SoilContactEffect<Dim>::begin_window(Tissue<Dim>& tissue, std::vector<Vec<D
         {mapping.interpolate(m, cells.distance_to_tip.values()), mapping.interpolate(m, cell_axis).normalized()});
   }
   spread(tissue);
+}
+
+template <int Dim>
+void SoilContactEffect<Dim>::bound_stiffness(std::vector<Vec<Dim>>& stiffness) const {
   for (const auto& [i, k] : window_.stiffness()) {
     if (i < stiffness.size()) stiffness[i].array() += k;  // the others rest
   }
@@ -72,8 +87,11 @@ void SoilContactEffect<Dim>::spread(Tissue<Dim>& tissue) {
 }
 
 template <int Dim>
-void SoilContactEffect<Dim>::add_forces(Tissue<Dim>& tissue) {
-  if (parameters_.stiffness_predictor) {
+void SoilContactEffect<Dim>::add_forces(Tissue<Dim>& tissue, SlipAdvance advance) {
+  if (!tissue.inertia) {
+    root_did(window_.balance(tissue.cells.position.values(), part(), advance.kept_h > 0.0));
+    spread(tissue);
+  } else if (parameters_.stiffness_predictor) {
     root_did(window_.follow(tissue.cells.position.values()));
     spread(tissue);
   }
@@ -85,7 +103,7 @@ void SoilContactEffect<Dim>::add_forces(Tissue<Dim>& tissue) {
 template <int Dim>
 void SoilContactEffect<Dim>::move_markers(const Tissue<Dim>& tissue) {
   const std::vector<MarkerMotion<Dim>> motion = window_.motion(tissue.cells.position.values(), tissue.cells.size());
-  exchange_.move(motion);
+  exchange_.move(motion, part());
   root_did(window_.work_Nmm(motion));
   if (window_.share() < 1.0 || !parameters_.free_growth.axial_rate_per_h) return;
   books_.expect(expected_speed_mm_h(), solver_.window_h(), tissue.time_h, solver_.axis().length_mm());
@@ -105,9 +123,9 @@ void SoilContactEffect<Dim>::exchange(const Tissue<Dim>& tissue) {
   if (parameters_.stiffness_predictor || !parameters_.free_growth.axial_rate_per_h) return;
   const RootSize root = root_size();
   const double free_speed_mm_h = expected_tip_speed_mm_h({}, root, parameters_.free_growth.axial_rate_per_h);
-  if (auto note =
-          energy_.soil_received(received_Nmm, window_.share(), parameters_.windows_per_interval * solver_.window_h(),
-                                tissue.time_h, root.arrest_N * free_speed_mm_h)) {
+  if (auto note = energy_.soil_received(received_Nmm, window_.share(),
+                                        parameters_.windows_per_interval * solver_.window_h() / part(), tissue.time_h,
+                                        root.arrest_N * free_speed_mm_h)) {
     notes_.push_back(std::move(*note));
   }
 }

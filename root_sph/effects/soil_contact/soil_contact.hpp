@@ -3,7 +3,8 @@
 //
 // One coupling interval is a whole number of solver windows. In it the cells carry the mean forces of the interval
 // before; at its end the soil is told how the markers moved and answers with the next forces (a staggered scheme of
-// first order: the interval is an accuracy knob).
+// first order: the interval is an accuracy knob). A root without inertia would give way to forces that are held as far
+// as its own stiffness lets it, and swing: it feels the contacts' stiffness as well (docs/decisions/0021).
 //
 // Markers, port and answer: exchange.hpp. Forces on cells in a window: prediction.hpp. What is told: bookkeeping.hpp.
 #pragma once
@@ -28,6 +29,8 @@ struct SoilContactParameters {
   /// In an interval a marker's force follows its contact stiffness, from the middle of the interval before, to which
   /// the mean force belongs. Without lag it is stable on rigid walls, where a held force pumps energy. Where the soil
   /// yields with stiffness k_soil, the root feels too much: as a dashpot of (k - k_soil) times the interval would add.
+  /// Where it is false, a root with inertia feels the held force, one without the stiffness against what departs from a
+  /// marker's mean pace: the dashpot of what is not steady.
   bool stiffness_predictor = false;
   bool under_relaxation = false;        ///< Aitken's
   std::optional<double> tip_length_mm;  ///< markers nearer to the tip make up the tip force; absent: a root's diameter
@@ -69,9 +72,12 @@ class SoilContactEffect final : public Effect<Dim> {
     Vec<Dim> tipwards;
   };
 
-  void begin_window(Tissue<Dim>& tissue, std::vector<Vec<Dim>>& stiffness);
+  void begin_window(Tissue<Dim>& tissue);
+  void bound_stiffness(std::vector<Vec<Dim>>& stiffness) const;
   void spread(Tissue<Dim>& tissue);
-  void add_forces(Tissue<Dim>& tissue);
+  void add_forces(Tissue<Dim>& tissue, SlipAdvance advance);
+  /// What the window is of a whole one: a step without inertia may be made in parts.
+  double part() const;
   void move_markers(const Tissue<Dim>& tissue);
   void root_did(const std::vector<double>& work_Nmm);
   void exchange(const Tissue<Dim>& tissue);

@@ -205,13 +205,7 @@ void complete_soil(Scene& scene) {
   if (!scene.has_root) return;
   check_room_for_root(scene);
   for (std::size_t i = 0; i < soil.obstacles.size(); ++i) check_soil_obstacle(soil.obstacles[i], i, scene);
-  if (!scene.numerics.has_inertia()) {
-    origins.fail(
-        origins.has("numerics.stepper") ? "numerics.stepper" : "soil",
-        "a root among grains is moved by forces of their last interval, and that takes its inertia to be stable",
-        std::string(name_of(scene.numerics.stepper)), "symplectic, predictor_corrector",
-        "write stepper = \"symplectic\" in [numerics]");
-  }
+  scene.facts.longest_step_h = scene.find<SoilContactSection>()->interval_h;
 }
 
 }  // namespace
@@ -371,7 +365,8 @@ SectionSpec soil_contact_section() {
   using Sk = SoilContactSection;
   return section<Sk>("soil.contact", optional, "How root and soil exchange motion and forces.", {
     key(&Sk::interval_h, "interval_h", "h", above(0).up_to(1, seconds),
-        "Between two exchanges, rounded to whole windows: the accuracy knob of the coupling.", "docs/soil.md"),
+        "Between two exchanges, in whole windows; without inertia the longest step: the accuracy knob of the coupling.",
+        "docs/soil.md"),
     key(&Sk::marker_radius_mm, "marker_radius_mm", "mm", above(0).up_to(10, microns), "Of the balls that are the root's surface.",
         "docs/soil.md").defaults_to("one cell"),
     key(&Sk::marker_spacing, "marker_spacing", "-", Limits{.low = 0.1, .high = 1, .above_remedy = "markers must be closer than their radius"},
@@ -380,7 +375,8 @@ SectionSpec soil_contact_section() {
         "docs/soil.md"),
     key(&Sk::ramp_h, "ramp_h", "h", at_least(0).up_to(1e3, seconds), "Forces rise from nothing over this time.", "docs/soil.md"),
     key(&Sk::stiffness_predictor, "stiffness_predictor", "-", any_number,
-        "Within an interval forces follow the contact stiffness; for rigid walls only.", "docs/soil.md"),
+        "Within an interval forces follow the contacts' stiffness, as on rigid walls; else, without inertia, they resist only "
+        "what departs from the mean pace.", "docs/soil.md"),
     key(&Sk::under_relaxation, "under_relaxation", "-", any_number, "Aitken's, for a stiff, tightly held root.", "docs/soil.md"),
     key(&Sk::tip_length_mm, "tip_length_mm", "mm", above(0).up_to(1e3, microns), "What counts as tip in tip forces.", "docs/soil.md")
         .defaults_to("a root's diameter"),
