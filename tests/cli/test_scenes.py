@@ -10,7 +10,7 @@ SCENES = sorted((PROJECT / "scenarios").glob("*.toml"))
 PARAMETERS = [pytest.param(path, id=path.stem) for path in SCENES]
 # a soil is packed first, which takes seconds, and needs YADE
 RUNS = [
-    pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * path.stem.startswith("soil_"))
+    pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * path.stem.startswith(("soil_", "growth_3d_full")))
     for path in SCENES
     if path.stem != "soil_3d"  # its packing alone takes minutes; tests/soil_coupling packs in three dimensions
 ]

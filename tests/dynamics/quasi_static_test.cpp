@@ -179,7 +179,7 @@ Balance balance_of(Block<Dim>& block, std::vector<Vec<Dim>>& displacement, const
     disturb();
   };
   return QuasiStatic<Dim>().solve(
-      block.tissue, block.terms, step_h, 1e-6, evaluate, [] { return std::vector<Mat<Dim>>(); }, displacement);
+      {block.tissue, block.terms, step_h, 1e-6, evaluate, [] { return std::vector<Mat<Dim>>(); }}, displacement);
 }
 
 TYPED_TEST(StepStiffness, FindsTheBalanceUnderPressure) {
@@ -212,6 +212,7 @@ TYPED_TEST(StepStiffness, SaysThatThereIsNoBalance) {
   });
   EXPECT_FALSE(balance.found);
   EXPECT_GT(balance.worst_imbalance, 1e-6);
+  EXPECT_EQ(balance.worst_cell, pulled);
 }
 
 }  // namespace
