@@ -52,7 +52,7 @@ FAMILIES = {
     "case3_pea_soft": PEA,
     "cells_from_microscopy": Family(0.1, ("division.l0_mm=0.019",)),
     "growth_3d": Family(0.3, coarse(0.03, 0.026)),
-    "growth_3d_full": Family(0.3, coarse(0.042, 0.05)),
+    "growth_3d_full": Family(0.3, coarse(0.042, 0.036)),
     "obstacle_tilted": Family(0.5, ("root.length_mm=2.5", "division.l0_mm=0.021")),
     "soil_3d": replace(GRAINS, hours=0.08),
     "soil_buckling": replace(GRAINS, hours=0.08),
