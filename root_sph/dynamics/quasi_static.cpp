@@ -171,8 +171,7 @@ class Search {
   /// A balance that a small push would end is left for the one that the root falls into, and one that is not found for
   /// want of stiffness is looked for along the mode that has little.
   Balance run() {
-    choose_start();
-    iterate();
+    iterate(choose_start());
     for (int k = 0; std::isfinite(balance_.imbalance) && may_buckle() && k < most_escapes; ++k) {
       if ((!built_ || balance_.iterations > iterations_of_a_good_matrix) && !build()) break;
       stability_.thrust = thrust();
@@ -230,16 +229,18 @@ class Search {
     balance_.imbalance = places_ > 0 ? std::sqrt(square / static_cast<double>(places_)) : 0.0;
   }
 
-  /// After a sudden motion the last step's flow is a worse guess than none.
-  void choose_start() {
+  /// After a sudden motion the last step's flow is a worse guess than none. True: the forces are those at x.
+  bool choose_start() {
     evaluate(x_);
     judge();
     const double with_flow = balance_.imbalance;
-    if (with_flow < doubtful_start) return;
+    if (with_flow < doubtful_start) return true;
     const Eigen::VectorXd flow = std::exchange(x_, Eigen::VectorXd::Zero(x_.size()));
     evaluate(x_);
     judge();
-    if (with_flow <= balance_.imbalance) x_ = flow;
+    if (balance_.imbalance < with_flow) return true;
+    x_ = flow;
+    return false;
   }
 
   bool build() {
@@ -257,15 +258,18 @@ class Search {
 
   /// Quasi-Newton iterations, mixed, until forces and what they still want to move are small. What moves for long under
   /// forces that are small already (a mode that has hardly any stiffness, cells that slide) ends where it moves least.
-  void iterate() {
+  /// \param evaluated the forces are those at x
+  void iterate(bool evaluated = false) {
     Mixing mixing;
     balance_.found = false;
     int halvings = 0, rebuilds = 0, after_balance = 0;
     double best = 0.0, least_move = 0.0;
     Eigen::VectorXd best_x, stillest_x, step;
     for (int k = 0;; ++k, ++balance_.iterations) {
-      evaluate(x_);
-      judge();
+      if (k > 0 || !evaluated) {
+        evaluate(x_);
+        judge();
+      }
       if (!std::isfinite(balance_.imbalance)) return;
       const bool balanced = balance_.imbalance <= problem_.tolerance;
       balance_.found = balance_.imbalance == 0.0;
