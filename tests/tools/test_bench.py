@@ -185,8 +185,9 @@ def test_the_quick_bench_measures_everything(project: Path, tmp_path: Path):
     for across, point in zip(tool.QUICK.across, performance_page.cases(rows, "scaling").values(), strict=True):
         scene = tmp_path / "work" / f"growth_3d_{across}_across.toml"
         assert point["cells"] == tool.examine(program, scene)["cells"]
-        # one evaluation at the guess, one an iteration, one for good
-        assert point["evaluations"] == pytest.approx(point["steps"] * (point["step_iterations"] + 2))
+        # one evaluation at the guess, one an iteration, one for good; more where the guess is doubtful
+        least = point["steps"] * (point["step_iterations"] + 2)
+        assert 0.999 * least <= point["evaluations"] <= 1.5 * least
     loops = performance_page.cases(rows, "roofline")
     assert len(loops) == 4 and all(loop["bytes"] > 0 for loop in loops.values())
     for name in ("performance_scaling.png", "performance_roofline.png"):
