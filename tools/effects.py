@@ -164,6 +164,8 @@ byte. tests/cli/test_absent_effects.py looks for fields, phases and pair terms t
 
 Processor time of the first {steps} steps with the effect, against the same scene without it (share of the whole; median
 of {pairs} pairs run in turn, one thread, noise some 5 %), and the memory that goes with it.
+A step takes as many iterations as its balance asks for, so that a share is also that of another root: without
+anisotropy it bloats in place of growing long, and without growth it rests.
 
 {shares}
 

@@ -18,8 +18,8 @@ from cli_support import PROJECT, Program, history
 SCENES = PROJECT / "scenarios"
 RECORDED = Path(__file__).with_name("golden_runs.csv")
 COLUMNS = ("scene", "column", "value")
-# What is left of a step's balance depends on the last digits, and they on the vector width: little is left here, and not
-# compared.
+# What is left of a step's balance depends on the last digits, and they on the vector width: little is left here, and
+# not compared.
 BALANCE = "numerics.force_tolerance=1e-9"
 RELATIVE, ABSOLUTE = 1e-6, 1e-8
 
