@@ -19,7 +19,7 @@ for argument in "$@"; do
     --werror) build_choice=(--werror) ;;
     -h | --help)
       echo "usage: tools/test.sh [--quick] [--werror]    build everything and run every test"
-      echo "  --quick   only those that take under 3 minutes in total"
+      echo "  --quick   without the slow ones"
       echo "  --werror  a compiler's warning is an error, as in continuous integration (compiles anew what was built without)"
       exit 0
       ;;
