@@ -25,14 +25,16 @@ template <int Dim>
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
-  /// \param contact stiffness of what a cell touches, N/mm, a block for each cell; empty: nothing touches
+  /// The tissue's part of the matrix.
+  virtual void assemble(const Tissue<Dim>& tissue, const PairTerms<Dim>& terms, const FreeCells& free, double dt_h) = 0;
+  /// Makes it ready for use, with what is touched added.
+  /// \param contact stiffness of what the cell in each place touches, N/mm, a block for each; empty: nothing touches
   /// \returns false where the matrix is not positive definite
-  virtual bool build(const Tissue<Dim>& tissue, const PairTerms<Dim>& terms, const FreeCells& free,
-                     const std::vector<Mat<Dim>>& contact, double dt_h) = 0;
+  virtual bool factor(const std::vector<Mat<Dim>>& contact) = 0;
   virtual void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const = 0;
-  /// To go on with the same bits; empty: it is built anew in every step.
-  virtual std::vector<double> save() const { return {}; }
-  virtual void restore(const std::vector<double>& saved) { static_cast<void>(saved); }
+  /// The tissue's part, to go on with the same bits.
+  virtual std::vector<double> save() const = 0;
+  virtual void restore(const std::vector<double>& saved) = 0;
 };
 
 /// The stiffness itself as a band along the root: two iterations a step; its cost grows with the square of the number

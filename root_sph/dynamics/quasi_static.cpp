@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "root_sph/dynamics/quasi_static.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
+#include <optional>
 #include <utility>
 
 namespace rootsoil {
@@ -13,15 +17,14 @@ namespace {
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
 constexpr int most_after_balance = 8;  // iterations after the first within the force's tolerance
 constexpr int mixed_iterations = 20;
-constexpr double most_strain = 0.2;      // of a pair's distance in one iteration
-constexpr double short_strain = 5e-3;    // of a pair's distance in a step after which the matrix is kept
-constexpr int most_kept_iterations = 6;  // with a matrix that was kept
+constexpr double most_strain = 0.2;    // of a pair's distance in one iteration
+constexpr double short_strain = 5e-3;  // of a pair's distance in a step after which the matrix is kept
 // Stability: stiffness of the softest mode over the tissue's own; displacements over a cell's size; thrust over p times
 // the held cells' faces.
 constexpr double least_stiffness = 1e-3, ample_stiffness = 0.5, small_move = 1e-3, first_move = 0.1;
 constexpr double least_thrust = 1e-4;
 constexpr double doubtful_start = 0.2;  // imbalance
-constexpr int most_escapes = 3, most_held = 25, iterations_of_a_good_matrix = 5;
+constexpr int most_escapes = 3, most_held = 25;
 // Multiplications of a band's factor, where layers could serve: what costs no more than they do, and what is worth
 // while where they fail.
 constexpr double little_work = 2e8, most_work = 2e11;
@@ -101,6 +104,15 @@ double largest_pair_strain(const Tissue<Dim>& tissue, const FreeCells& free, con
   return std::sqrt(strain2);
 }
 
+template <int Dim>
+double closest_pair_mm(const Tissue<Dim>& tissue) {
+  double closest2 = std::numeric_limits<double>::infinity();
+  for (const auto& [i, j] : tissue.pairs.pairs) {
+    closest2 = std::min(closest2, (tissue.cells.position[j] - tissue.cells.position[i]).squaredNorm());
+  }
+  return std::sqrt(closest2);
+}
+
 /// How far cells move, over their size, the most of all.
 template <int Dim>
 double largest_move(const Eigen::VectorXd& move, const Eigen::VectorXd& sizes) {
@@ -121,18 +133,35 @@ Vec<Dim> across(const Vec<Dim>& axis) {
   }
 }
 
-/// Of each place, 1 where what the cell touches is stiff enough to matter beside the tissue.
+/// Whether what a cell touches is stiff enough to matter beside the tissue.
 template <int Dim>
-std::vector<std::int64_t> touched_places(const Tissue<Dim>& tissue, const FreeCells& free,
-                                         const std::vector<Mat<Dim>>& contact) {
+bool matters(const Tissue<Dim>& tissue, std::int32_t cell, const Mat<Dim>& contact) {
   constexpr double share = 0.05;  // of E_A through a cell
-  std::vector<std::int64_t> touched(free.cell.size(), 0);
-  for (std::size_t p = 0; p < touched.size() && !contact.empty(); ++p) {
-    const std::int32_t i = free.cell[p];
-    const double stiffness = tissue.material.E_axial_MPa * std::pow(tissue.cells.volume[i], 1.0 - 2.0 / Dim);
-    touched[p] = contact[i].norm() > share * stiffness;
+  return contact.norm() > share * tissue.material.E_axial_MPa * std::pow(tissue.cells.volume[cell], 1.0 - 2.0 / Dim);
+}
+
+/// The free cells with these ids in these places; absent: others are free.
+template <int Dim>
+std::optional<FreeCells> places_of(const Tissue<Dim>& tissue, const std::vector<std::int64_t>& ids) {
+  const auto& cells = tissue.cells;
+  if (ids.empty()) return {};
+  std::vector<std::int32_t> cell_of(static_cast<std::size_t>(tissue.next_cell_id), -1);
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells.clamped[i]) continue;
+    cell_of[static_cast<std::size_t>(cells.cell_id[i])] = static_cast<std::int32_t>(i);
+    ++number;
   }
-  return touched;
+  if (number != ids.size()) return {};
+  FreeCells free;
+  free.place.assign(cells.size(), -1);
+  for (const std::int64_t id : ids) {
+    const std::int32_t i = cell_of[static_cast<std::size_t>(id)];
+    if (i < 0) return {};
+    free.place[i] = static_cast<std::int32_t>(free.cell.size());
+    free.cell.push_back(i);
+  }
+  return free;
 }
 
 /// One search for a balance, with one preconditioner.
@@ -140,17 +169,15 @@ template <int Dim>
 class Search {
  public:
   using Displacements = typename QuasiStatic<Dim>::Displacements;
-  using Kept = typename QuasiStatic<Dim>::Kept;
+  using Method = typename QuasiStatic<Dim>::Method;
   using Stability = typename QuasiStatic<Dim>::Stability;
 
-  /// \param kept the preconditioner's matrix, to begin with and to keep; null: it is built, and not kept
-  Search(const typename QuasiStatic<Dim>::Problem& problem, const FreeCells& free, Preconditioner<Dim>& preconditioner,
-         Kept* kept, Stability& stability, Displacements& displacement)
+  Search(const typename QuasiStatic<Dim>::Problem& problem, const FreeCells& free, Method& method, Stability& stability,
+         Displacements& displacement)
       : problem_(problem),
         tissue_(problem.tissue),
         free_(free),
-        preconditioner_(preconditioner),
-        kept_(kept),
+        method_(method),
         stability_(stability),
         displacement_(displacement),
         places_(std::ssize(free.cell)),
@@ -164,25 +191,25 @@ class Search {
       sizes_[p] = std::pow(tissue_.cells.volume[free.cell[p]], 1.0 / Dim);
       faces_[p] = tissue_.cells.volume[free.cell[p]] / sizes_[p];
     }
-    built_ = kept && !kept->id.empty();
-    if (built_) touched_ = kept->is_touched;
+    built_ = !method.id.empty();
+    closest_pair_mm_ = closest_pair_mm<Dim>(tissue_);
   }
 
   /// A balance that a small push would end is left for the one that the root falls into, and one that is not found for
   /// want of stiffness is looked for along the mode that has little.
   Balance run() {
     iterate(choose_start());
-    for (int k = 0; std::isfinite(balance_.imbalance) && may_buckle() && k < most_escapes; ++k) {
-      if ((!built_ || balance_.iterations > iterations_of_a_good_matrix) && !build()) break;
+    for (int k = 0; std::isfinite(balance_.imbalance) && may_buckle(); ++k) {
+      if ((!built_ || is_old(balance_.iterations)) && !build()) break;
       stability_.thrust = thrust();
       const Mode mode = softest_mode();
       stability_.stiffness = mode.stiffness;
       balance_.stable = mode.stiffness > least_stiffness;
-      if (balance_.found ? balance_.stable : mode.stiffness > ample_stiffness) break;
+      if (k == most_escapes || (balance_.found ? balance_.stable : mode.stiffness > ample_stiffness)) break;
       follow(mode);
       iterate();
     }
-    if (kept_ && largest_pair_strain<Dim>(tissue_, free_, x_) > short_strain) *kept_ = {};
+    if (largest_pair_strain<Dim>(tissue_, free_, x_) > short_strain) method_.forget();
     put(x_);
     return balance_;
   }
@@ -210,7 +237,7 @@ class Search {
 
   /// z = M^-1 r; nothing along a mode that is held.
   void precondition() {
-    preconditioner_.apply(r_, z_);
+    method_.preconditioner->apply(r_, z_);
     if (held_) z_ -= held_->load.dot(z_) / held_->v.dot(held_->load) * held_->v;
   }
 
@@ -243,26 +270,55 @@ class Search {
     return false;
   }
 
+  /// A new matrix, ready for use.
   bool build() {
-    const std::vector<Mat<Dim>> touching = problem_.contact();
-    touched_ = touched_places<Dim>(tissue_, free_, touching);
-    if (kept_) *kept_ = {};
-    built_ = preconditioner_.build(tissue_, problem_.terms, free_, touching, problem_.dt_h);
+    method_.forget();
+    method_.preconditioner->assemble(tissue_, problem_.terms, free_, problem_.dt_h);
+    method_.contact = touched();
+    method_.dt_h = problem_.dt_h;
     fresh_ = true;
-    if (!built_ || !kept_) return built_;
-    for (const std::int32_t i : free_.cell) kept_->id.push_back(tissue_.cells.cell_id[i]);
-    kept_->is_touched = touched_;
-    kept_->dt_h = problem_.dt_h;
+    built_ = method_.preconditioner->factor(method_.contact);
+    if (!built_) return false;
+    for (const std::int32_t i : free_.cell) method_.id.push_back(tissue_.cells.cell_id[i]);
     return true;
+  }
+
+  /// A matrix that was kept, and needs twice the iterations that it did.
+  bool is_old(int iterations) const { return !fresh_ && iterations > 2 * method_.iterations + 1; }
+
+  /// Stiffness of what the cell in each place touches.
+  std::vector<Mat<Dim>> touched() const {
+    const std::vector<Mat<Dim>> of_cells = problem_.contact();
+    std::vector<Mat<Dim>> of_places;
+    if (of_cells.empty()) return of_places;
+    for (const std::int32_t i : free_.cell) of_places.push_back(of_cells[i]);
+    return of_places;
+  }
+
+  /// What the root touches may come and go: the matrix follows. False: it cannot.
+  bool follow_contact() {
+    std::vector<Mat<Dim>> now = touched();
+    bool same = now.size() == method_.contact.size();
+    for (std::size_t p = 0; same && p < now.size(); ++p) {
+      const std::int32_t i = free_.cell[p];
+      same = matters(tissue_, i, now[p]) == matters(tissue_, i, method_.contact[p]);
+    }
+    if (same) return true;
+    ++rebuilds_;
+    mixing_.forget();
+    method_.contact = std::move(now);
+    built_ = method_.preconditioner->factor(method_.contact);
+    return built_ || build();
   }
 
   /// Quasi-Newton iterations, mixed, until forces and what they still want to move are small. What moves for long under
   /// forces that are small already (a mode that has hardly any stiffness, cells that slide) ends where it moves least.
   /// \param evaluated the forces are those at x
   void iterate(bool evaluated = false) {
-    Mixing mixing;
+    mixing_.forget();
+    rebuilds_ = 0;
     balance_.found = false;
-    int halvings = 0, rebuilds = 0, after_balance = 0;
+    int halvings = 0, after_balance = 0;
     double best = 0.0, least_move = 0.0;
     Eigen::VectorXd best_x, stillest_x, step;
     for (int k = 0;; ++k, ++balance_.iterations) {
@@ -287,14 +343,15 @@ class Search {
         best_x = x_;
         halvings = 0;
       }
-      const bool too_old = !fresh_ && k >= most_kept_iterations;
-      if (!built_ || too_old ||
-          (rebuilds < most_rebuilds && touched_places<Dim>(tissue_, free_, problem_.contact()) != touched_)) {
+      if (!built_ || is_old(k)) {
         if (!build()) return;
-        ++rebuilds;
-        mixing.forget();
+        method_.iterations = 0;
+        mixing_.forget();
+      } else if (rebuilds_ < most_rebuilds && !follow_contact()) {
+        return;
       }
       precondition();
+      if (fresh_) ++method_.iterations;
       if (balanced) {
         const double move = largest_move<Dim>(z_, sizes_);
         balance_.found = move <= problem_.tolerance;
@@ -305,7 +362,7 @@ class Search {
         }
       }
       if (stillest_x.size() > 0) ++after_balance;
-      mixing.improve(x_, r_, z_);
+      mixing_.improve(x_, r_, z_);
       step = z_;
       x_ += limited(step);
     }
@@ -316,6 +373,11 @@ class Search {
   }
 
   const Eigen::VectorXd& limited(Eigen::VectorXd& step) const {
+    double farthest2 = 0.0;
+    for (Eigen::Index p = 0; p < places_; ++p) {
+      farthest2 = std::max(farthest2, step.segment<Dim>(p * Dim).squaredNorm());
+    }
+    if (4.0 * std::sqrt(farthest2) < most_strain * closest_pair_mm_) return step;  // no need to look at the pairs
     const double strain = largest_pair_strain<Dim>(tissue_, free_, step);
     if (strain > most_strain) step *= most_strain / strain;
     return step;
@@ -352,7 +414,7 @@ class Search {
     for (Eigen::Index p = 0; p < places_; ++p) {
       mode.load.template segment<Dim>(p * Dim) = faces_[p] * across<Dim>(tissue_.cells.frame[free_.cell[p]].col(0));
     }
-    preconditioner_.apply(mode.load, mode.v);
+    method_.preconditioner->apply(mode.load, mode.v);
     const Eigen::VectorXd here = r_;
     const auto resisted = [&](double move) -> Eigen::VectorXd {  // K v
       const double push = move / largest_move<Dim>(mode.v, sizes_);
@@ -364,7 +426,7 @@ class Search {
       const Eigen::VectorXd force = resisted(small_move);
       mode.stiffness = stiffness_over(force);
       if (mode.stiffness > ample_stiffness || k == 2) break;
-      preconditioner_.apply(force, z_);
+      method_.preconditioner->apply(force, z_);
       mode.v -= z_;
       mode.load -= force;
     }
@@ -410,13 +472,14 @@ class Search {
   const typename QuasiStatic<Dim>::Problem& problem_;
   const Tissue<Dim>& tissue_;
   const FreeCells& free_;
-  Preconditioner<Dim>& preconditioner_;
-  Kept* kept_;
+  Method& method_;
   Stability& stability_;
   Displacements& displacement_;
   Eigen::Index places_;
   Eigen::VectorXd x_, r_, z_, sizes_, faces_;
-  std::vector<std::int64_t> touched_;
+  Mixing mixing_;
+  int rebuilds_ = 0;
+  double closest_pair_mm_;
   bool built_ = false, fresh_ = false;  ///< there is a matrix; it is of this search
   const Mode* held_ = nullptr;
   double pull_ = 0.0;  ///< amplitude that the held mode's force would add
@@ -427,64 +490,63 @@ class Search {
 
 template <int Dim>
 Balance QuasiStatic<Dim>::solve(const Problem& problem, Displacements& displacement) {
-  const std::optional<FreeCells> known = kept_places(problem.tissue, problem.dt_h);
-  if (!known) kept_ = {};
-  const FreeCells free = known ? *known : order_free_cells<Dim>(problem.tissue.cells);
-  const auto search_with = [&](Preconditioner<Dim>& preconditioner, Kept* kept) {
-    return Search<Dim>(problem, free, preconditioner, kept, stability_, displacement).run();
-  };
   if constexpr (Dim == 2) {
-    return search_with(*band_, &kept_);
+    return search_with(band_, problem, displacement);
   } else {
-    const double work = band_work<Dim>(problem.tissue.pairs, free);
-    if (work < little_work) return search_with(*band_, &kept_);
+    const double work = band_work<Dim>(problem.tissue.pairs, order_free_cells<Dim>(problem.tissue.cells));
+    if (work < little_work) return search_with(band_, problem, displacement);
     const Displacements guess = displacement;
-    const Balance balance = search_with(*layers_, nullptr);
+    const Balance balance = search_with(layers_, problem, displacement);
     if (balance.found || work >= most_work) return balance;
     displacement = guess;
-    return search_with(*band_, nullptr);
+    const Balance with_band = search_with(band_, problem, displacement);
+    band_.forget();
+    return with_band;
   }
 }
 
-/// The free cells in the order of the kept matrix; absent: it serves no more.
 template <int Dim>
-std::optional<FreeCells> QuasiStatic<Dim>::kept_places(const Tissue<Dim>& tissue, double dt_h) const {
-  const auto& cells = tissue.cells;
-  if (kept_.id.empty() || kept_.dt_h != dt_h) return {};
-  std::vector<std::int32_t> cell_of(static_cast<std::size_t>(tissue.next_cell_id), -1);
-  std::size_t number = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (cells.clamped[i]) continue;
-    cell_of[static_cast<std::size_t>(cells.cell_id[i])] = static_cast<std::int32_t>(i);
-    ++number;
-  }
-  if (number != kept_.id.size()) return {};
-  FreeCells free;
-  free.place.assign(cells.size(), -1);
-  for (const std::int64_t id : kept_.id) {
-    const std::int32_t i = cell_of[static_cast<std::size_t>(id)];
-    if (i < 0) return {};
-    free.place[i] = static_cast<std::int32_t>(free.cell.size());
-    free.cell.push_back(i);
-  }
-  return free;
+Balance QuasiStatic<Dim>::search_with(Method& method, const Problem& problem, Displacements& displacement) {
+  const std::optional<FreeCells> known =
+      method.dt_h == problem.dt_h ? places_of<Dim>(problem.tissue, method.id) : std::nullopt;
+  if (!known) method.forget();
+  const FreeCells free = known ? *known : order_free_cells<Dim>(problem.tissue.cells);
+  return Search<Dim>(problem, free, method, stability_, displacement).run();
 }
 
 template <int Dim>
 void QuasiStatic<Dim>::save(std::map<std::string, std::vector<double>>& reals,
                             std::map<std::string, std::vector<std::int64_t>>& integers) const {
-  integers["balance/places"] = kept_.id;
-  integers["balance/touched"] = kept_.is_touched;
-  reals["balance/dt_h"] = {kept_.dt_h};
-  reals["balance/matrix"] = kept_.id.empty() ? std::vector<double>{} : band_->save();
+  for (const auto& [name, method] : {std::pair{"band", &band_}, std::pair{"layers", &layers_}}) {
+    const std::string at = fmt::format("balance/{}/", name);
+    integers[at + "places"] = method->id;
+    if (method->id.empty()) continue;
+    std::vector<double>& contact = reals[at + "contact_N_mm"];
+    for (const Mat<Dim>& block : method->contact) contact.insert(contact.end(), block.data(), block.data() + Dim * Dim);
+    integers[at + "iterations"] = {method->iterations};
+    reals[at + "dt_h"] = {method->dt_h};
+    reals[at + "matrix"] = method->preconditioner->save();
+  }
   reals["balance/stability"] = {stability_.stiffness, stability_.thrust};
 }
 
 template <int Dim>
 void QuasiStatic<Dim>::restore(const std::map<std::string, std::vector<double>>& reals,
                                const std::map<std::string, std::vector<std::int64_t>>& integers) {
-  kept_ = {integers.at("balance/places"), integers.at("balance/touched"), reals.at("balance/dt_h").at(0)};
-  if (!kept_.id.empty()) band_->restore(reals.at("balance/matrix"));
+  for (const auto& [name, method] : {std::pair{"band", &band_}, std::pair{"layers", &layers_}}) {
+    const std::string at = fmt::format("balance/{}/", name);
+    method->id = integers.at(at + "places");
+    if (method->id.empty()) continue;
+    const std::vector<double>& contact = reals.at(at + "contact_N_mm");
+    method->contact.clear();
+    for (std::size_t k = 0; k < contact.size(); k += Dim * Dim) {
+      method->contact.push_back(Eigen::Map<const Mat<Dim>>(contact.data() + k));
+    }
+    method->iterations = integers.at(at + "iterations").at(0);
+    method->dt_h = reals.at(at + "dt_h").at(0);
+    method->preconditioner->restore(reals.at(at + "matrix"));
+    ROOTSOIL_ASSERT(method->preconditioner->factor(method->contact));
+  }
   stability_ = {reals.at("balance/stability").at(0), reals.at("balance/stability").at(1)};
 }
 

@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,11 +52,14 @@ class QuasiStatic {
   void restore(const std::map<std::string, std::vector<double>>& reals,
                const std::map<std::string, std::vector<std::int64_t>>& integers);
 
-  /// The matrix of an earlier, short step: it serves as long as the same cells are free.
-  struct Kept {
-    std::vector<std::int64_t> id;          ///< of the cell of each place; empty: there is none
-    std::vector<std::int64_t> is_touched;  ///< of each place
+  /// A preconditioner, and of which earlier, short step its matrix is: it serves as long as the same cells are free.
+  struct Method {
+    std::unique_ptr<Preconditioner<Dim>> preconditioner;
+    std::vector<std::int64_t> id{};   ///< of the cell of each place; empty: there is no matrix
+    std::vector<Mat<Dim>> contact{};  ///< stiffness of what is touched, of each place; empty: nothing can be
+    std::int64_t iterations = 0;      ///< that the step needed for which it was made
     double dt_h = 0.0;
+    void forget() { id.clear(); }
   };
   /// What the softest mode was found to be when it was looked at last, and the thrust on the base then, N.
   struct Stability {
@@ -65,11 +67,9 @@ class QuasiStatic {
   };
 
  private:
-  std::optional<FreeCells> kept_places(const Tissue<Dim>& tissue, double dt_h) const;
+  Balance search_with(Method& method, const Problem& problem, Displacements& displacement);
 
-  std::unique_ptr<Preconditioner<Dim>> band_ = make_band_preconditioner<Dim>(),
-                                       layers_ = make_layer_preconditioner<Dim>();
-  Kept kept_;  ///< of the band
+  Method band_{make_band_preconditioner<Dim>()}, layers_{make_layer_preconditioner<Dim>()};
   Stability stability_;
 };
 

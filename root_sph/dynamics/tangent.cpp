@@ -7,22 +7,19 @@
 namespace rootsoil {
 namespace {
 
-/// Engineering strain in the material frame of a displacement field d (x) h, as a matrix that acts on d in the frame of
-/// space.
+/// factor times the engineering strain in the material frame of a displacement field d (x) h, as a matrix that acts on
+/// h: row v Dim + c is entry v under d along axis c.
 template <int Dim>
-Eigen::Matrix<double, voigt_size<Dim>, Dim> strain_operator(const Vec<Dim>& h_material, const Mat<Dim>& frame) {
-  Eigen::Matrix<double, voigt_size<Dim>, Dim> b = Eigen::Matrix<double, voigt_size<Dim>, Dim>::Zero();
-  const Vec<Dim>& h = h_material;
-  for (int a = 0; a < Dim; ++a) b(a, a) = h[a];
-  if constexpr (Dim == 2) {
-    b(2, 0) = h[1];
-    b(2, 1) = h[0];
-  } else {
-    b(3, 1) = b(4, 0) = h[2];
-    b(3, 2) = b(5, 0) = h[1];
-    b(4, 2) = b(5, 1) = h[0];
+Eigen::Matrix<double, voigt_size<Dim> * Dim, Dim> strain_operator(const VoigtMat<Dim>& factor, const Mat<Dim>& frame) {
+  Eigen::Matrix<double, voigt_size<Dim> * Dim, Dim> all;
+  for (int c = 0; c < Dim; ++c) {
+    for (int a = 0; a < Dim; ++a) {
+      const Mat<Dim> gradient = frame.row(c).transpose() * frame.row(a);
+      const Voigt<Dim> strain = factor * to_strain_voigt<Dim>(0.5 * (gradient + gradient.transpose()));
+      for (int v = 0; v < voigt_size<Dim>; ++v) all(v * Dim + c, a) = strain[v];
+    }
   }
-  return b * frame.transpose();
+  return all;
 }
 
 }  // namespace
@@ -52,36 +49,29 @@ void CellStiffness<Dim>::find(std::size_t i, std::span<const typename Stencils<D
   const Material<Dim>& material = tissue_.material;
   nodes_ = nodes.size();
   const auto columns = static_cast<Eigen::Index>(nodes_);
-  strain_root_.resize(Eigen::NoChange, columns * Dim);
   weights_.resize(Eigen::NoChange, columns);
+  weights_.col(0).setZero();
+  for (Eigen::Index node = 1; node < columns; ++node) {
+    const auto& n = nodes[static_cast<std::size_t>(node)];
+    const Vec<Dim>& g = n.second ? tissue_.gradients[n.pair].at_j : tissue_.gradients[n.pair].at_i;
+    weights_.col(node) = g;
+    weights_.col(0) -= g;
+  }
 
   // F of the step's end, at the displacement that the tissue has now
   const Mat<Dim> deformation = tissue_.deformation[i] + dt_h_ * tissue_.velocity_gradient[i];
-  const Mat<Dim> carry = deformation.inverse().transpose();
   const double growth = material.softening ? dt_h_ * (*material.softening)[i] / material.rho0_ug_mm3 : 0.0;
   const double factor = std::sqrt(cells.volume[i] * deformation.determinant() / (1.0 + growth));
   const VoigtMat<Dim> elastic = elastic_tangent<Dim>(material.stiffness_of(i));
   const VoigtMat<Dim> root = factor * VoigtMat<Dim>(elastic.llt().matrixU());
-  const Mat<Dim>& frame = cells.frame[i];
-  const auto set_node = [&](Eigen::Index node, const Vec<Dim>& weight) {
-    weights_.col(node) = weight;
-    strain_root_.template middleCols<Dim>(node * Dim) =
-        root * strain_operator<Dim>(frame.transpose() * (carry * weight), frame);
-  };
-  Vec<Dim> own = Vec<Dim>::Zero();
-  for (Eigen::Index node = 1; node < columns; ++node) {
-    const auto& n = nodes[static_cast<std::size_t>(node)];
-    const Vec<Dim>& g = n.second ? tissue_.gradients[n.pair].at_j : tissue_.gradients[n.pair].at_i;
-    set_node(node, g);
-    own -= g;
-  }
-  set_node(0, own);
+  multiply<voigt_size<Dim> * Dim, Dim>(strain_operator<Dim>(root, cells.frame[i]) * deformation.inverse().transpose(),
+                                       weights_, strain_root_);
   if (!terms_.non_affine) return;
 
   // P = sum_j s_j z_j z_j^T, z_j = (1 at j) - (1 at i) - (g_k . r_j at k)
   star_.resize(columns);
   star_[0] = 0.0;
-  resisted_.setZero(Dim, columns);  // first Y = E^T s R, then X = G M/2 - Y
+  arm_.setZero(Dim, columns);  // E^T s R
   Mat<Dim> moment = Mat<Dim>::Zero();
   for (Eigen::Index node = 1; node < columns; ++node) {
     const auto& n = nodes[static_cast<std::size_t>(node)];
@@ -90,11 +80,12 @@ void CellStiffness<Dim>::find(std::size_t i, std::span<const typename Stencils<D
     const Vec<Dim> r = (*terms_.non_affine->start_position)[n.cell] - (*terms_.non_affine->start_position)[i];
     star_[node] = s;
     star_[0] += s;
-    resisted_.col(node) = -s * r;
-    resisted_.col(0) += s * r;
+    arm_.col(node) = -s * r;
+    arm_.col(0) += s * r;
     moment += s * r * r.transpose();
   }
-  resisted_.noalias() += 0.5 * moment * weights_;
+  multiply<Dim, Dim>(0.5 * moment, weights_, resisted_);
+  resisted_ += arm_;
 }
 
 template struct Stencils<2>;

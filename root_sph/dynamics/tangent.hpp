@@ -29,6 +29,25 @@ struct Stencils {
   }
 };
 
+/// Rows of numbers, a column for each node of a stencil: loops run along the nodes.
+template <int Rows>
+using NodeRows = Eigen::Matrix<double, Rows, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// product = factor times rows, for a factor whose size is known.
+template <int Rows, int Inner>
+void multiply(const Eigen::Matrix<double, Rows, Inner>& factor, const NodeRows<Inner>& rows, NodeRows<Rows>& product) {
+  const Eigen::Index columns = rows.cols();
+  product.resize(Eigen::NoChange, columns);
+  for (int r = 0; r < Rows; ++r) {
+    double* __restrict out = product.data() + r * columns;
+    for (Eigen::Index n = 0; n < columns; ++n) {
+      double sum = 0.0;
+      for (int k = 0; k < Inner; ++k) sum += factor(r, k) * rows.data()[k * columns + n];
+      out[n] = sum;
+    }
+  }
+}
+
 /// One cell's share of the stiffness matrix K = sum_i (W_i^T W_i + P_i (x) 1), over the nodes of its stencil.
 ///
 /// W^T W = V det F B^T C B/(1 + dt lambda/rho0): of the stress, with the operators carried along by F. P is an upper
@@ -44,7 +63,8 @@ class CellStiffness {
   void find(std::size_t cell, std::span<const typename Stencils<Dim>::Node> nodes);
 
   std::size_t nodes() const { return nodes_; }
-  /// W, N^(1/2) mm^(-1/2): a row for each entry of the strain, Dim columns for each node. Voigt x (Dim nodes).
+  /// W, N^(1/2) mm^(-1/2): row v Dim + c is entry v of the strain under displacements along axis c, a column for each
+  /// node. (Voigt Dim) x nodes.
   const auto& strain_root() const { return strain_root_; }
   /// P = diag(star) with its hub + G X^T + X G^T, N/mm; G and X have Dim rows, a column for each node.
   const auto& weights() const { return weights_; }    ///< G, 1/mm
@@ -57,8 +77,8 @@ class CellStiffness {
   const PairTerms<Dim>& terms_;
   double dt_h_;
   std::size_t nodes_ = 0;
-  Eigen::Matrix<double, voigt_size<Dim>, Eigen::Dynamic, Eigen::RowMajor> strain_root_;
-  Eigen::Matrix<double, Dim, Eigen::Dynamic, Eigen::RowMajor> weights_, resisted_;
+  NodeRows<voigt_size<Dim> * Dim> strain_root_;
+  NodeRows<Dim> weights_, resisted_, arm_;
   Eigen::VectorXd star_;
 };
 

@@ -80,7 +80,7 @@ Handle create_dataset_of(hid_t parent, const std::string& name, std::span<const 
     const std::array<hsize_t, 2> chunk{std::min(extent[0], rows_per_chunk), width};
     check(H5Pset_chunk(layout, rank, chunk.data()), action);
     check(H5Pset_shuffle(layout), action);
-    check(H5Pset_deflate(layout, 4), action);
+    check(H5Pset_deflate(layout, 1), action);
   }
   Handle dataset(H5Dcreate2(parent, name.c_str(), file_type, space, links, layout, H5P_DEFAULT), H5Dclose, action);
   if (!values.empty()) check(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), action);
