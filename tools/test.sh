@@ -34,5 +34,5 @@ done
 "$root/tools/lint.sh" "${lint_choice[@]}"
 "$root/tools/build.sh" "${build_choice[@]}"
 export OMP_WAIT_POLICY=passive # two tests run at once: waiting threads must not take the other's core
-/usr/bin/python3 -m pytest -q -p no:cacheprovider --import-mode=importlib "${pytest_choice[@]}" "$root/tests"
+/usr/bin/python3 -m pytest -q -p no:cacheprovider --import-mode=importlib --numprocesses 2 --dist loadscope "${pytest_choice[@]}" "$root/tests"
 ctest --test-dir "$root/build/release" --parallel 2 --output-on-failure --no-tests=error "${ctest_choice[@]}"

@@ -51,6 +51,7 @@ struct Hooks {
   Passes<> step_loads;
   Passes<SlipAdvance> forces;                        ///< add to the forces of cells
   Passes<std::vector<Mat<Dim>>&> contact_stiffness;  ///< without inertia: add what touches a cell now, N/mm
+  Passes<bool&> friction;  ///< without inertia, at a balance: friction follows the forces; true where it matters
 
   // The window's end, in this order: pairs and deformation of the window are still there; what remains is state.
   Passes<> surface;   ///< what is carried along by the tissue moves

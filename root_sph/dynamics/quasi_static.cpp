@@ -15,6 +15,7 @@ namespace rootsoil {
 namespace {
 
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
+constexpr int most_adaptations = 10;
 constexpr int most_after_balance = 8;  // iterations after the first within the force's tolerance
 constexpr int mixed_iterations = 20;
 constexpr double most_strain = 0.2;    // of a pair's distance in one iteration
@@ -198,7 +199,7 @@ class Search {
   /// A balance that a small push would end is left for the one that the root falls into, and one that is not found for
   /// want of stiffness is looked for along the mode that has little.
   Balance run() {
-    iterate(choose_start());
+    settle(choose_start());
     for (int k = 0; std::isfinite(balance_.imbalance) && may_buckle(); ++k) {
       if ((!built_ || is_old(balance_.iterations)) && !build()) break;
       stability_.thrust = thrust();
@@ -207,7 +208,7 @@ class Search {
       balance_.stable = mode.stiffness > least_stiffness;
       if (k == most_escapes || (balance_.found ? balance_.stable : mode.stiffness > ample_stiffness)) break;
       follow(mode);
-      iterate();
+      settle();
     }
     if (largest_pair_strain<Dim>(tissue_, free_, x_) > short_strain) method_.forget();
     put(x_);
@@ -309,6 +310,13 @@ class Search {
     method_.contact = std::move(now);
     built_ = method_.preconditioner->factor(method_.contact);
     return built_ || build();
+  }
+
+  /// A balance with the friction that belongs to it: friction is bounded by the normal forces of the balance before, so
+  /// that the rest is the gradient of a convex function, until they are the same.
+  void settle(bool evaluated = false) {
+    iterate(evaluated);
+    for (int k = 0; k < most_adaptations && balance_.found && problem_.adapt(); ++k) iterate();
   }
 
   /// Quasi-Newton iterations, mixed, until forces and what they still want to move are small. What moves for long under

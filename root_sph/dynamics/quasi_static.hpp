@@ -41,6 +41,8 @@ class QuasiStatic {
     double tolerance;  ///< on Balance::imbalance, and on how far cells still want to move over their size
     Evaluate evaluate;
     ContactStiffness contact;
+    /// What the forces are bounded by (friction) follows those of a balance; true: they are others now.
+    std::function<bool()> adapt = [] { return false; };
   };
 
   /// \param displacement first guess in, solution out; zero on held cells

@@ -261,8 +261,14 @@ bool Solver<Dim>::find_balance() {
     Hooks<Dim>::template run<std::vector<Mat<Dim>>&>(hooks_.contact_stiffness, clock_, tissue_, stiffness);
     return stiffness;
   };
+  const auto adapt_friction = [&] {
+    bool matters = false;
+    Hooks<Dim>::template run<bool&>(hooks_.friction, clock_, tissue_, matters);
+    return matters;
+  };
   clock_.measure("balance", [&] {
-    balance_ = quasi_static_.solve({tissue_, terms_, dt, options_.force_tolerance, evaluate, contact}, displacement);
+    balance_ = quasi_static_.solve({tissue_, terms_, dt, options_.force_tolerance, evaluate, contact, adapt_friction},
+                                   displacement);
   });
   effort_.balance_iterations += balance_.iterations;
   if (!balance_.found) {

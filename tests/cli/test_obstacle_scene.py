@@ -16,7 +16,6 @@ CELL_MM = 0.03
 COARSER = [
     f"root.cell_size_mm={CELL_MM}",
     f"division.l0_mm={1.5 * CELL_MM}",
-    "numerics.step_h=1e-4",
     "output.picture=false",
 ]
 

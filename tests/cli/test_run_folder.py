@@ -329,7 +329,7 @@ def test_a_bin_that_the_root_reaches_later(program: Program):
 
 def test_interrupted_before_it_begins(program: Program):
     """Ctrl-C while the cells are made: exit status 130, and no run."""
-    scene = program.scene(SMALL.replace("cell_size_mm = 0.01", "cell_size_mm = 8e-5"))  # a second or more
+    scene = program.scene(SMALL.replace("cell_size_mm = 0.01", "cell_size_mm = 5e-5"))  # a second or more
     running = program.start("run", scene, "--out", "out")
     time.sleep(0.5)
     running.send_signal(signal.SIGINT)

@@ -48,10 +48,10 @@ def root_in_soil(program_path: Path, tmp_path_factory: pytest.TempPathFactory) -
     return program
 
 
-def command(out: str, *more: object, settings: Sequence[str] = ()) -> list[object]:
+def command(out: str, *more: object, settings: Sequence[str] = (), threads: int = 1) -> list[object]:
     """The small scene into a folder."""
     overrides = [word for value in (*SMALLER, *settings) for word in ("--set", value)]
-    return ["run", SCENE, "--out", out, "--threads", 1, *overrides, *more]
+    return ["run", SCENE, "--out", out, "--threads", threads, *overrides, *more]
 
 
 def yade_of(pid: int) -> int | None:
@@ -114,6 +114,13 @@ def test_what_a_run_holds(root_in_soil: Program):
     markers = last["markers/force"].sum(axis=0)
     assert np.linalg.norm(on_root - markers)[()] < 0.2 * np.linalg.norm(last["markers/force"], axis=1).sum()
     assert "grains" in (run / "run.xmf").read_text()
+
+
+def test_two_threads_as_one(root_in_soil: Program):
+    """Two threads for the root, one for the grains: the same numbers."""
+    assert root_in_soil(*command("two", threads=2)).status == 0
+    assert summary(root_in_soil.folder / "two")["threads"] == 2
+    same_numbers(root_in_soil.folder / "two", root_in_soil.folder / "whole")
 
 
 def test_resume_changes_nothing(root_in_soil: Program):

@@ -212,6 +212,9 @@ ObstacleEffect<Dim>::ObstacleEffect(Solver<Dim>& solver, ObstacleParameters<Dim>
   solver.hooks().contact_stiffness.emplace_back(
       name, [this](Tissue<Dim>& t, std::vector<Mat<Dim>>& k) { add_stiffness(t, k); });
   solver.hooks().forces.emplace_back(name, [this](Tissue<Dim>& t, SlipAdvance advance) { add_forces(t, advance); });
+  if (parameters_.friction > 0.0) {
+    solver.hooks().friction.emplace_back(name, [this](Tissue<Dim>& t, bool& matters) { adapt_friction(t, matters); });
+  }
 }
 
 template <int Dim>
@@ -274,6 +277,24 @@ void ObstacleEffect<Dim>::add_forces(Tissue<Dim>& tissue, SlipAdvance advance) {
       if (sliding_) (*sliding_)[i] = parameters_.friction * std::max(0.0, force_[i].dot(surface.normal));
     }
     tissue.force[i] += force_[i];
+  }
+}
+
+/// What friction can carry now; it matters by more than a part of itself, and of the largest.
+template <int Dim>
+void ObstacleEffect<Dim>::adapt_friction(const Tissue<Dim>& tissue, bool& matters) {
+  constexpr double share = 1e-3;
+  double largest = 0.0;
+  std::vector<double> sliding(near_.size());
+  for (std::size_t k = 0; k < near_.size(); ++k) {
+    const Vec<Dim> normal = nearest_surface<Dim>(parameters_.shape, tissue.cells.position[near_[k]]).normal;
+    sliding[k] = parameters_.friction * std::max(0.0, force_[near_[k]].dot(normal));
+    largest = std::max(largest, sliding[k]);
+  }
+  for (std::size_t k = 0; k < near_.size(); ++k) {
+    double& before = (*sliding_)[near_[k]];
+    matters |= std::abs(sliding[k] - before) > share * (sliding[k] + largest);
+    before = sliding[k];
   }
 }
 

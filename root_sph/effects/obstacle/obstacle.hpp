@@ -60,12 +60,13 @@ class ObstacleEffect final : public Effect<Dim> {
   void bound_stiffness(const Tissue<Dim>& tissue, std::vector<Vec<Dim>>& stiffness) const;
   void add_stiffness(const Tissue<Dim>& tissue, std::vector<Mat<Dim>>& stiffness) const;
   void add_forces(Tissue<Dim>& tissue, SlipAdvance advance);
+  void adapt_friction(const Tissue<Dim>& tissue, bool& matters);
 
   ObstacleParameters<Dim> parameters_;
   Solver<Dim>& solver_;
   Field<Dim, Vec<Dim>>& slip_;     ///< mm, zero out of contact
   Field<Dim, Vec<Dim>>& force_;    ///< N, of the latest step
-  Field<Dim, double>* sliding_;    ///< N, that friction can carry, of the step before; nullptr with inertia
+  Field<Dim, double>* sliding_;    ///< N, that friction can carry; nullptr with inertia, where it is what it is
   std::vector<std::size_t> near_;  ///< cells that can touch within the window
 };
 
