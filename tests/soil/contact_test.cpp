@@ -237,7 +237,7 @@ friction = 0.0
 )");
   const PlateForce by_obstacle = press(obstacle);
   expect_that_of_arrest("obstacle", by_obstacle);
-  for (const double stiffness_N_mm : {50.0, 200.0}) {
+  for (const double stiffness_N_mm : {50.0, 200.0, 1000.0}) {
     SoilRun<2> soil({}, predicting(), [&](const Scene& s) { return fixed_plate(s, stiffness_N_mm); });
     const PlateForce by_soil = press(soil);
     const std::string name = fmt::format("soil of {} N/mm", stiffness_N_mm);

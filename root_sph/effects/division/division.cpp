@@ -106,9 +106,21 @@ std::string runaway_division(std::size_t cells, double shorter) {
 
 template <int Dim>
 DivisionEffect<Dim>::DivisionEffect(Solver<Dim>& solver, const DivisionSection& division)
-    : division_(division), mean_volume_(mean_of(solver.tissue().cells.volume.values())) {
+    : solver_(solver), division_(division), mean_volume_(mean_of(solver.tissue().cells.volume.values())) {
   solver.hooks().spacing.emplace_back("even spacing", [&solver](Tissue<Dim>&) { even_out_spacing<Dim>(solver); });
   solver.hooks().division.emplace_back("division", [this](Tissue<Dim>& tissue) { divide(tissue); });
+}
+
+/// Length now of a cell that reaches its threshold at the window's end. Cells can divide only at its start. Daughters
+/// grow as their mother would: when all divide that would have to within the window, every cell is at its end, where
+/// outputs are, as if each had divided in its time. (Those that have passed it already: on average half a window's
+/// growth late.)
+template <int Dim>
+double DivisionEffect<Dim>::due_above_mm(const Tissue<Dim>& tissue, std::size_t cell) const {
+  const double s_mm = tissue.cells.distance_to_tip[cell];
+  const RootAxis<Dim>& axis = solver_.axis();
+  return division_threshold_mm(division_, s_mm + solver_.window_h() * axis.flow_mm_h(s_mm)) *
+         std::exp(-solver_.window_h() * std::max(0.0, axis.strain_rate_per_h(s_mm)));
 }
 
 template <int Dim>
@@ -118,7 +130,7 @@ void DivisionEffect<Dim>::divide(Tissue<Dim>& tissue) const {
   std::vector<char> divides(mothers);
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < mothers; ++i) {
-    const double l = threshold_mm(tissue, i);
+    const double l = due_above_mm(tissue, i);
     const Mat<Dim> above = cells.shape[i] - 4.0 / (l * l) * Mat<Dim>::Identity();
     // positive definite: every axis is shorter than the threshold. Cheaper than the axes themselves
     divides[i] =

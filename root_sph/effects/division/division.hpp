@@ -39,6 +39,9 @@ class DivisionEffect final : public Effect<Dim> {
     return division_threshold_mm(division_, tissue.cells.distance_to_tip[cell]);
   }
 
+  double due_above_mm(const Tissue<Dim>& tissue, std::size_t cell) const;
+
+  const Solver<Dim>& solver_;
   DivisionSection division_;
   double mean_volume_;  ///< of a cell at the start
 };
