@@ -23,7 +23,9 @@ constexpr double short_strain = 5e-3;  // of a pair's distance in a step after w
 // Stability: stiffness of the softest mode over the tissue's own; displacements over a cell's size; thrust over p times
 // the held cells' faces.
 constexpr double least_stiffness = 1e-3, ample_stiffness = 0.5, small_move = 1e-3, first_move = 0.1;
-constexpr double least_thrust = 1e-4;
+constexpr double restless_move = 1e-2;
+constexpr double least_thrust = 1e-4, much_more_thrust = 1.1;
+constexpr int most_unwatched_steps = 20;
 constexpr double doubtful_start = 0.2;  // imbalance
 constexpr int most_escapes = 3, most_held = 25;
 // Multiplications of a band's factor, where layers could serve: what costs no more than they do, and what is worth
@@ -200,13 +202,16 @@ class Search {
   /// want of stiffness is looked for along the mode that has little.
   Balance run() {
     settle(choose_start());
+    ++stability_.steps;
     for (int k = 0; std::isfinite(balance_.imbalance) && may_buckle(); ++k) {
       if ((!built_ || is_old(balance_.iterations)) && !build()) break;
       stability_.thrust = thrust();
+      stability_.steps = 0;
       const Mode mode = softest_mode();
       stability_.stiffness = mode.stiffness;
       balance_.stable = mode.stiffness > least_stiffness;
-      if (k == most_escapes || (balance_.found ? balance_.stable : mode.stiffness > ample_stiffness)) break;
+      const bool settled = balance_.found && !restless_;
+      if (k == most_escapes || (settled ? balance_.stable : mode.stiffness > ample_stiffness)) break;
       follow(mode);
       settle();
     }
@@ -325,7 +330,7 @@ class Search {
   void iterate(bool evaluated = false) {
     mixing_.forget();
     rebuilds_ = 0;
-    balance_.found = false;
+    balance_.found = restless_ = false;
     int halvings = 0, after_balance = 0;
     double best = 0.0, least_move = 0.0;
     Eigen::VectorXd best_x, stillest_x, step;
@@ -378,6 +383,7 @@ class Search {
     evaluate(x_);
     judge();
     balance_.found = stillest_x.size() > 0;
+    restless_ = balance_.found && least_move > restless_move;
   }
 
   const Eigen::VectorXd& limited(Eigen::VectorXd& step) const {
@@ -401,9 +407,9 @@ class Search {
     return sum;
   }
 
-  /// Whether the root is pressed, and so much that its softest mode is to be looked at: with a new matrix, where none
-  /// was found, and where it would be soft if it lost stiffness as a column does, 1 - P/P_Euler.
-  bool may_buckle() const {
+  /// Whether the root is pressed, and its softest mode is to be looked at: with a new matrix, where no balance was
+  /// found, where it was soft, where the thrust has grown, and now and then, for the root gets longer.
+  bool may_buckle() {
     const auto& cells = tissue_.cells;
     double section = 0.0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -411,8 +417,8 @@ class Search {
     }
     const double now = thrust();
     if (now <= least_thrust * stress_scale<Dim>(tissue_) * section) return false;
-    if (fresh_ || !balance_.found || stability_.thrust <= 0.0) return true;
-    return 1.0 - (1.0 - stability_.stiffness) * now / stability_.thrust < ample_stiffness;
+    return fresh_ || !balance_.found || stability_.stiffness < ample_stiffness ||
+           now > much_more_thrust * stability_.thrust || stability_.steps >= most_unwatched_steps;
   }
 
   /// What a load from the side does, and two steps of the power method on 1 - M^-1 K from there, whose largest
@@ -455,7 +461,7 @@ class Search {
     evaluate(x_);
     Eigen::VectorXd near = x_, far;
     double pull_near = pull_, pull_far = 0.0;
-    const double side = (balance_.found ? -mode.load.dot(x_) : pull_) < 0.0 ? -1.0 : 1.0;
+    const double side = (balance_.found && !restless_ ? -mode.load.dot(x_) : pull_) < 0.0 ? -1.0 : 1.0;
     double way = side * first_move / move_of_one;
     for (int k = 0; k < most_held; ++k) {
       x_ = far.size() == 0 ? Eigen::VectorXd(near + way * mode.v)
@@ -490,7 +496,8 @@ class Search {
   double closest_pair_mm_;
   bool built_ = false, fresh_ = false;  ///< there is a matrix; it is of this search
   const Mode* held_ = nullptr;
-  double pull_ = 0.0;  ///< amplitude that the held mode's force would add
+  bool restless_ = false;  ///< forces balance, and cells want to move on
+  double pull_ = 0.0;      ///< amplitude that the held mode's force would add
   Balance balance_;
 };
 
@@ -536,6 +543,7 @@ void QuasiStatic<Dim>::save(std::map<std::string, std::vector<double>>& reals,
     reals[at + "matrix"] = method->preconditioner->save();
   }
   reals["balance/stability"] = {stability_.stiffness, stability_.thrust};
+  integers["balance/unwatched_steps"] = {stability_.steps};
 }
 
 template <int Dim>
@@ -555,7 +563,8 @@ void QuasiStatic<Dim>::restore(const std::map<std::string, std::vector<double>>&
     method->preconditioner->restore(reals.at(at + "matrix"));
     ROOTSOIL_ASSERT(method->preconditioner->factor(method->contact));
   }
-  stability_ = {reals.at("balance/stability").at(0), reals.at("balance/stability").at(1)};
+  stability_ = {reals.at("balance/stability").at(0), reals.at("balance/stability").at(1),
+                integers.at("balance/unwatched_steps").at(0)};
 }
 
 template class QuasiStatic<2>;

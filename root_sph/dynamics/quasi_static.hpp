@@ -63,9 +63,10 @@ class QuasiStatic {
     double dt_h = 0.0;
     void forget() { id.clear(); }
   };
-  /// What the softest mode was found to be when it was looked at last, and the thrust on the base then, N.
+  /// What the softest mode was found to be when it was looked at last, the thrust on the base then, N, and since when.
   struct Stability {
     double stiffness = 1.0, thrust = 0.0;
+    std::int64_t steps = 0;
   };
 
  private:
