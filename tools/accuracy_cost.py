@@ -4,8 +4,8 @@
 
 Writes OUT/accuracy_cost.csv, a row for each run and measure, after every run; rows that are there are not run again.
 A row's key is made of the command, the scene and the programs. Without --quick and --out the pictures and
-docs/accuracy_cost.md are made anew from it. The cost of a run is the processor time that it and its children used, the
-time on the wall where a core is free; --part 1/2 and --part 2/2 may run at once.
+docs/accuracy_cost.md are made anew from it. The cost of a run is the processor time that it and its children used but
+for starting the program, the time on the wall where a core is free; --part 1/2 and --part 2/2 may run at once.
 """
 
 from __future__ import annotations
@@ -120,8 +120,9 @@ def run_task(task: Task, programs: Path, program: str, known: set[str]) -> list[
                 measure=m.name,
                 status=status,
                 error=nan,
-                inertia_error=cost.inertia_error if cost else nan,
+                unbalanced=cost.unbalanced if cost else nan,
                 cpu_s=cpu_s,
+                start_s=cost.start_s if cost else 0.0,
                 wall_s=wall_s,
                 cells=cost.cells if cost else nan,
                 steps=cost.steps if cost else nan,

@@ -20,6 +20,7 @@ from rootsoil_tools.criteria import GENERAL, Finding
 BINARY = ("finished", "finite", "cells_kept", "restart")  # kept or not: a margin has no middle
 MOST_RECORDED = 100.0  # a margin beyond is not guarded more tightly
 ROOM = 0.7  # recorded over measured
+REFUSED, TOO_LONG = "refused", "not finished"  # how what is said of an edge begins where no criterion failed
 PASSES, FAILS = "#2C7FB8", "#D55E00"
 
 
@@ -75,12 +76,9 @@ class EdgeRow:
             return f"not stable at {self.start:.3g}{unit} ({self.failed})"
         if self.bad is None:
             return f"stable to {self.good:.3g}{unit}, the furthest tried"
-        end = (
-            f"refused at {self.bad:.3g}{unit}"
-            if self.failed == "refused"
-            else f"at {self.bad:.3g} fails: {self.failed}"
-        )
-        return f"stable to {self.good:.3g}{unit}; {end}"
+        told = self.failed.startswith((REFUSED, TOO_LONG))
+        end = self.failed if told else f"fails: {self.failed}"
+        return f"stable to {self.good:.3g}{unit}; at {self.bad:.3g} {end}"
 
 
 @dataclass(frozen=True)
@@ -207,7 +205,9 @@ def edge_panel(axes: Axes, edges: list[EdgeRow]) -> None:
         times = reach(row)
         axes.barh(y, times - 1.0, left=1.0, height=0.34, color=colours[row.scheme], linewidth=0)
         unit = "" if row.unit == "-" else f" {row.unit}"
-        end = ", furthest tried" if row.bad is None else ", refused beyond" if row.failed == "refused" else ""
+        begins = {REFUSED: ", refused beyond", TOO_LONG: ", takes too long beyond"}
+        ends = [text for begin, text in begins.items() if row.failed.startswith(begin)]
+        end = ", furthest tried" if row.bad is None else "".join(ends)
         axes.text(max(times, 1.0) * 1.15, y, f"{row.good:.3g}{unit}{end}", size=5, va="center")
     axes.set_xscale("log")
     axes.set(xlim=(1.0, 3e5), ylim=(len(names) - 0.4, -0.6), xlabel="stable up to this many times the start")
