@@ -109,8 +109,12 @@ def run_cost(run: Run, summary: Mapping[str, Any]) -> Cost:
 
 def mean_cost(costs: Sequence[Cost]) -> Cost:
     """Of the samples of a problem."""
-    keys = ("cells", "steps", "hours", "unbalanced")
-    return Cost(*(float(np.mean([getattr(c, key) for c in costs])) for key in keys), sum(c.start_s for c in costs))
+
+    def mean(key: str) -> float:
+        return float(np.mean([getattr(c, key) for c in costs]))
+
+    start_s = sum(c.start_s for c in costs)
+    return Cost(mean("cells"), mean("steps"), mean("hours"), mean("unbalanced"), start_s)
 
 
 def scene_problem(
@@ -154,7 +158,8 @@ def beam_problem(name: str, title: str, meaning: str, in_balance: Changes) -> Pr
     `in_balance`: what steps that end in balance need besides."""
 
     def prepare(programs: Path, folder: Path, across: int, choice: Choice) -> list[list[str]]:
-        changes = {**({} if choice.has_inertia else {STEPPER: IN_BALANCE, **in_balance}), **choice.changes}
+        own: Changes = {} if choice.has_inertia else {STEPPER: IN_BALANCE, **in_balance}
+        changes: dict[str, Any] = {**own, **choice.changes}
         if "non_affine_control" in changes:  # an argument cannot take a section away
             del changes["non_affine_control"]
             changes |= {"non_affine_control.damping": 0.0, "non_affine_control.stiffness": 0.0}

@@ -218,10 +218,10 @@ def finish_panel(axes: Axes) -> None:
     axes.set(xscale="log", yscale="log")
     widen(axes.get_xlim, axes.set_xlim, 5.0)
     widen(axes.get_ylim, axes.set_ylim, 15.0)
-    low, high = axes.get_xlim()
-    if high < 100.0 * low:
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}" if x < 1e4 else f"{x / 1e6:g} M"))
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        if high < 100.0 * low:
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.yaxis.set_minor_formatter(NullFormatter())
     axes.grid(visible=True, which="major", color="#E8E8E8", linewidth=0.5)
