@@ -105,6 +105,7 @@ DIALS: dict[str, list[Dial]] = {
     "soil": in_soil(
         Dial("interval", "soil.contact.interval_h", (0.016, 0.008, 0.002), 0.004),
         Dial("grain stiffness", "soil.E_MPa", (25.0, 200.0), 100.0),
+        Dial("explicit, interval", "soil.contact.interval_h", (0.016,), 0.004, SYMPLECTIC, EXPLICIT_NAME),
         Dial("marker spacing", "soil.contact.marker_spacing", (1.0, 0.4), 0.6),
     ),
 }

@@ -90,6 +90,7 @@ STYLES: dict[str, tuple[str, str, float]] = {
     CORRECTOR_NAME: (OLIVE, "P", 1.2),
     "explicit, step": (GREY, "x", 0.8),
     "explicit, window": (GREY, "<", 0.8),
+    "explicit, interval": (GREY, ">", 0.8),
     "explicit, scalar inertia": (GREY, "^", 0.0),
     "explicit, no compensation": (GREY, "v", 0.0),
     "explicit, preset fast": (GREY, "1", 0.0),
