@@ -12,6 +12,7 @@ taken as they are, interrupted ones go on.
 from __future__ import annotations
 
 import argparse
+import shutil
 import signal
 import subprocess
 import sys
@@ -55,20 +56,19 @@ class Edge:
     hours: Callable[[float], float]
     quick: bool = False
     of_ratio: bool = False
-    with_inertia_from: float | None = None  # where the paper's scheme starts, if not there too
 
 
 def edges() -> list[Edge]:
     """The edges of the stable region of the base case."""
-    rate_per_h = 0.40
+    rate_per_h, kept_h = report.BASE_RATE_PER_H, report.USUAL_STEP_H
     free = {**UNIFORM, "division": None}
 
     def alike(ratio: float) -> Changes:
         return {**UNIFORM, **moduli(ratio)}
 
     return [
-        Edge("step", "h", "step", 0.1, 1.0,
-             lambda v: {"numerics.step_h": v}, lambda v: 12 * v, quick=True, with_inertia_from=1e-4),
+        Edge("step", "h", "step", 1e-4, 1.0,
+             lambda v: {"numerics.step_h": v}, lambda v: 12 * v, quick=True),
         Edge("ratio_up", "-", "E_R/E_A, upwards", 1.0, 270.0, alike, lambda v: 1.0, quick=True, of_ratio=True),
         Edge("ratio_down", "-", "E_R/E_A, downwards", 1.0, 0.01, alike, lambda v: 1.0, of_ratio=True),
         Edge("stretch", "-", "stretch of all tissue, no division", 1.5, 100.0,
@@ -77,9 +77,9 @@ def edges() -> list[Edge]:
              lambda v: UNIFORM, lambda v: log(v) / rate_per_h),
         Edge("lambda_up", "-", "lambda0, step from the program", 1.0, 1e4,
              lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v}, lambda v: 2.0 / v),
-        Edge("lambda_up_fixed_step", "-", "lambda0, step kept at 0.1 h", 1.0, 1e2,
-             lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v, "numerics.step_h": 0.1},
-             lambda v: max(2.0 / v, 1.2)),
+        Edge("lambda_up_fixed_step", "-", f"lambda0, step kept at {kept_h:g} h", 1.0, 1e2,
+             lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v, "numerics.step_h": kept_h},
+             lambda v: max(2.0 / v, 12 * kept_h)),
         Edge("lambda_down", "-", "lambda0, downwards", 1.0, 1e-4,
              lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v}, lambda v: 2.0),
     ]  # fmt: skip
@@ -111,6 +111,8 @@ class Runner:
             except subprocess.CalledProcessError as error:
                 if error.returncode not in (REFUSED, UNPHYSICAL, SOIL_FAILED, TOO_LONG):
                     raise
+                if error.returncode == TOO_LONG:  # else it would go on from there the next time
+                    shutil.rmtree(folder, ignore_errors=True)
                 if error.returncode in ENDS:
                     return folder, ENDS[error.returncode]
         return folder, last_error(folder)
@@ -158,15 +160,14 @@ class Runner:
 
     def edge(self, edge: Edge, scheme: Scheme, resolution: float) -> report.EdgeRow:
         """Bisects, in the logarithm, between the last stable and the first value that is not."""
-        start = edge.with_inertia_from if scheme is PAPER and edge.with_inertia_from else edge.start
-        row = report.EdgeRow(edge.name, edge.unit, edge.meaning, scheme.name, start, edge.furthest)
-        fine, failed = self.stable(edge, scheme, start)
+        row = report.EdgeRow(edge.name, edge.unit, edge.meaning, scheme.name, edge.start, edge.furthest)
+        fine, failed = self.stable(edge, scheme, edge.start)
         if not fine:
-            return row.ended(None, start, failed)
+            return row.ended(None, edge.start, failed)
         fine, failed = self.stable(edge, scheme, edge.furthest)
         if fine:
             return row.ended(edge.furthest, None, "")
-        good, bad = start, edge.furthest
+        good, bad = edge.start, edge.furthest
         while max(good / bad, bad / good) > resolution:
             middle = sqrt(good * bad)
             fine, why = self.stable(edge, scheme, middle)
@@ -244,7 +245,7 @@ def main() -> int:
         if not options.quick:
             report.draw_map(case_rows, edge_rows, PROJECT / "docs" / "images" / "stability.png")
             remarks = {case.name: case.remark for case in cases()}
-            report.write_page(case_rows, edge_rows, remarks, PROJECT / "docs" / "stability.md")
+            report.write_page(case_rows, edge_rows, remarks, EDGE_LIMIT_S, PROJECT / "docs" / "stability.md")
         elif options.record:
             report.write_rows(RECORDED, report.recorded_bounds(case_rows, edge_rows))
     except subprocess.CalledProcessError as error:
