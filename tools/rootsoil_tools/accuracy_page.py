@@ -286,12 +286,12 @@ PAGE = """\
 <!-- Written by tools/accuracy_cost.py. What is changed here is lost. -->
 # What accuracy costs
 
-Small problems with known answers, computed in many ways. `tools/accuracy_cost.py` runs them, in seventeen minutes on
-one core, and writes this page, its pictures and [accuracy_cost.csv](accuracy_cost.csv), a row for each run and
-measure; it goes on where it was stopped, and `--part 1/2` and `--part 2/2` share the runs between two cores. Errors are
-those against the closed form, and only where there is none against the finest run. Times are processor time of one
-thread but for starting the program (0.02 to 0.2 s with these roots), on a machine that other programs used as well:
-the same run takes a third more or less.
+Small problems with known answers, computed in many ways. `tools/accuracy_cost.py` runs them, in 25 minutes on one core
+beside other programs, and writes this page, its pictures and [accuracy_cost.csv](accuracy_cost.csv), a row for each run
+and measure; it goes on where it was stopped, and `--part 1/2` and `--part 2/2` share the runs between two cores. Errors
+are those against the closed form, and only where there is none against the finest run. Times are processor time of one
+thread but for starting the program (0.02 to 0.2 s with these roots); since other programs ran as well, the same run
+takes a third more or less.
 
 {runs} Made with {program}.
 
@@ -316,13 +316,13 @@ axial force over p times the section), mean over the run's second half.
 {presets}
 What the tables below say:
 
-- **Steppers.** For the same error the default takes a sixth to a ninth of the explicit stepper's time in strain under
-  pressure, a quarter for a cantilever, a third for a root on a plate, and a fortieth along an obstacle, where the
-  explicit one needs 40,000 steps (8 across) so that contact is no impact. In free growth it takes half to two thirds:
-  the explicit one's inertia is compensated there, and four to eight times balanced's step does. Lengths of dividing
-  cells to 1 % cost about the same with both. The predictor-corrector takes nearly twice the explicit one's time for the
-  same result. The paper's whole scheme takes ten times the default's time for isotropic strain; elsewhere it is
-  refused, or does not bend as it should.
+- **Steppers.** For the same error the default takes a fifth to a seventh of the explicit stepper's time in strain under
+  pressure and under Euler's load, a fifth for a cantilever, a third for a root on a plate, and a fiftieth along an
+  obstacle, where the explicit one needs 40,000 steps (8 across) so that contact is no impact. In free growth it takes
+  two thirds: the explicit one's inertia is compensated there, and four to eight times balanced's step does. Lengths of
+  dividing cells to 1 % cost about the same with both. The predictor-corrector takes nearly twice the explicit one's
+  time for the same result. The paper's whole scheme takes more than ten times the default's time for isotropic strain;
+  elsewhere it is refused, or does not bend as it should.
 - **Cells across** decide the error in growth, bending and along an obstacle. Up to 16 across the default's time goes
   with their number squared, since its step does not follow the cell (explicit: cubed). Strain under pressure is exact
   to 0.1 % with any number of cells.
@@ -334,15 +334,15 @@ What the tables below say:
   bend needs it: a force must be large against the tolerance times p and a cell's face. A cantilever bent by 0.2 % of
   its length needs 1e-4 (`fast` has 1e-3: every step goes on bending it), a column with a force across of 8e-5 of p on a
   cell 1e-6.
-- Keep the cell-shaped kernel: isotropic ones take 2 to 13 times the time and are less exact, the wide ones by far. A
+- Keep the cell-shaped kernel: isotropic ones take 2 to 11 times the time and are less exact, the wide ones by far. A
   larger kernel (eta 2) has a seventh of the error of a cantilever for a fifth more in growth and a third more time.
 - Keep the corrected gradient (plain: nothing comes out right), quadratic at surfaces (linear: bending is soft).
   Quadratic everywhere has nine tenths of the error in growth and twice that and more in bending.
-- Non-affine control costs an eighth of the time; bending needs it, and a column finds no balance without.
+- Non-affine control costs a sixth of the time and more; bending needs it, and a column finds no balance without.
 - A path along an obstacle needs cells, 8 across; kernel, step and tolerance hardly matter to it.
 - With the explicit stepper keep the compensation of inertia: without it the same step has ten times the error in
-  growth. Short windows have an eighth of the error in cell lengths for a third more time: cells divide between windows.
-- Sleep (`[sleep]`) takes half to three quarters of the time where most of a small root is mature. With its default
+  growth. Short windows have an eighth of the error in cell lengths for more time: cells divide between windows.
+- Sleep (`[sleep]`) takes about half the time where most of a small root is mature. With its default
   tolerances it changes growth by a thousandth of a percent, with 0.001 /h by 0.014 %.
 - In soil keep the inertial number at 0.01 or below (at 0.1 forces are about twice as large) and the interval at 0.008 h
   or below (at 0.016 h a third of the force on the tip is lost). The other choices make no difference beyond the
@@ -389,7 +389,7 @@ Float against double is not offered: the program computes in double. Everything 
 
 A root of 4 mm of which 1.7 mm grow, 8 cells across, 3 h. Tissue that strains no faster than `strain_rate_per_h` is left
 out of the computation; `stress_change` (here with a strain rate of 0.001 /h) is what wakes it again. The defaults are
-1e-4 /h and 0.05. A tolerance that freezes tissue which still strains saves nothing and spoils growth: the stress of
+1e-4 /h and 0.05. A tolerance that freezes tissue which still strains saves little and spoils growth: the stress of
 what is frozen changes, and all wakes, over and over. So does a `stress_change` below the ripples that are always there.
 
 {sleep}
@@ -410,7 +410,8 @@ nothing is left to chance: over three stretches of the probe's way.
   of the finest run, at 0.03 both are a third too large; at the default 0.01 they lie within the scatter of those at
   0.003 and less.
 - The **interval** between exchanges is the root's step. Up to 0.008 h it makes no difference beyond the scatter; at
-  0.016 h the tip meets a quarter to a half less force in every sample.
+  0.016 h the tip meets a quarter to a half less force in every sample, while the explicit stepper, which takes many
+  steps in an interval, meets the same as at 0.004 h.
 - **Substeps and marker spacing** make no difference beyond the scatter. Growth under the forces that the root meets
   follows the closed form within 1 %, and closer with markers at 0.4 of their radius. The explicit stepper's root meets
   the same forces and grows alike.
