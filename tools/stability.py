@@ -39,7 +39,7 @@ BROKEN = {"unphysical": "the tissue broke", "soil failed": "the soil"}  # summar
 SAMPLE = ("ratio_1", "ratio_15", "three_wide")  # of the paper's cases in quick mode
 RECORDED = PROJECT / "tests" / "stability" / "recorded_margins.csv"
 RESOLUTION, QUICK_RESOLUTION = 1.15, 1.5  # at which a bisection ends: failing over passing value
-EDGE_LIMIT_S = 60  # processor time of a run of an edge; where balance is hardly found, steps are halved for hours
+EDGE_LIMIT_S = 60  # processor time of a run of an edge; a root that swells without end takes hours
 ENDS = {REFUSED: report.REFUSED, TOO_LONG: f"{report.TOO_LONG} within {EDGE_LIMIT_S} s"}  # no message tells these
 
 

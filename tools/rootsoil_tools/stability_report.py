@@ -279,7 +279,8 @@ The default scheme runs the hours given, {restart}; the paper's runs a shorter v
 
 Found by bisection in the logarithm, to {resolution:.0f} %, on the base case of 200 cells. The paper's scheme is tried
 with E_R = E_A and growth that is the same everywhere. A run that is not finished within {limit} s of processor time,
-where others take a second, counts as not stable: there hardly any step finds a balance, and all are cut.
+where most take a second, counts as not stable. It is E_R/E_A far below 1 that does it: such a root swells fiftyfold
+and more in an hour, is many times as wide as it is long, and its cells multiply to thousands.
 
 {edges}
 """
