@@ -12,6 +12,8 @@ taken as they are, interrupted ones go on.
 from __future__ import annotations
 
 import argparse
+import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
@@ -32,11 +34,13 @@ from hard_cases import DEFAULT, PAPER, SCHEMES, UNIFORM, Case, Changes, Scheme, 
 RESTART = Criterion(
     "restart", "part of the results that are the same, bit for bit, after a restart in the middle", 1.0, most=False
 )
-REFUSED, UNPHYSICAL, SOIL_FAILED = 2, 3, 4  # exit statuses
+REFUSED, UNPHYSICAL, SOIL_FAILED, TOO_LONG = 2, 3, 4, -signal.SIGXCPU  # exit statuses
 BROKEN = {"unphysical": "the tissue broke", "soil failed": "the soil"}  # summary's status: how the message begins
 SAMPLE = ("ratio_1", "ratio_15", "three_wide")  # of the paper's cases in quick mode
 RECORDED = PROJECT / "tests" / "stability" / "recorded_margins.csv"
 RESOLUTION, QUICK_RESOLUTION = 1.15, 1.5  # at which a bisection ends: failing over passing value
+EDGE_LIMIT_S = 60  # processor time of a run of an edge; a root that swells without end takes hours
+ENDS = {REFUSED: report.REFUSED, TOO_LONG: f"{report.TOO_LONG} within {EDGE_LIMIT_S} s"}  # no message tells these
 
 
 @dataclass(frozen=True)
@@ -56,14 +60,14 @@ class Edge:
 
 def edges() -> list[Edge]:
     """The edges of the stable region of the base case."""
-    rate_per_h = 0.40
+    rate_per_h, kept_h = report.BASE_RATE_PER_H, report.USUAL_STEP_H
     free = {**UNIFORM, "division": None}
 
     def alike(ratio: float) -> Changes:
         return {**UNIFORM, **moduli(ratio)}
 
     return [
-        Edge("step", "h", "step", 0.1, 1.0,
+        Edge("step", "h", "step", 1e-4, 1.0,
              lambda v: {"numerics.step_h": v}, lambda v: 12 * v, quick=True),
         Edge("ratio_up", "-", "E_R/E_A, upwards", 1.0, 270.0, alike, lambda v: 1.0, quick=True, of_ratio=True),
         Edge("ratio_down", "-", "E_R/E_A, downwards", 1.0, 0.01, alike, lambda v: 1.0, of_ratio=True),
@@ -73,9 +77,9 @@ def edges() -> list[Edge]:
              lambda v: UNIFORM, lambda v: log(v) / rate_per_h),
         Edge("lambda_up", "-", "lambda0, step from the program", 1.0, 1e4,
              lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v}, lambda v: 2.0 / v),
-        Edge("lambda_up_fixed_step", "-", "lambda0, step kept at 0.001 h", 1.0, 1e3,
-             lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v, "numerics.step_h": 1e-3},
-             lambda v: max(2.0 / v, 0.12)),
+        Edge("lambda_up_fixed_step", "-", f"lambda0, step kept at {kept_h:g} h", 1.0, 1e2,
+             lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v, "numerics.step_h": kept_h},
+             lambda v: max(2.0 / v, 12 * kept_h)),
         Edge("lambda_down", "-", "lambda0, downwards", 1.0, 1e-4,
              lambda v: {"growth.lambda0_ug_mm3_h": 4.34e5 * v}, lambda v: 2.0),
     ]  # fmt: skip
@@ -89,26 +93,28 @@ class Runner:
         self.scenes = out / "scenes"
         self.scenes.mkdir(parents=True, exist_ok=True)
 
-    def series(self, name: str, text: str, twin: Sequence[str] | None = None) -> Series:
+    def series(self, name: str, text: str, twin: Sequence[str] | None = None, cpu_limit_s: int | None = None) -> Series:
         """Runs of the scene, which is written beside them; `twin`: against a plate, with these arguments."""
         scene = self.scenes / f"{name}.toml"
         if not scene.is_file() or scene.read_text(encoding="utf-8") != text:
             scene.write_text(text, encoding="utf-8")
         program = self.program if twin is None else self.twin
-        return Series(scene, self.out / "runs", program, ["--quiet", *(twin or ())], threads=1)
+        arguments = ["--quiet", *(twin or ())]
+        return Series(scene, self.out / "runs", program, arguments, threads=1, cpu_limit_s=cpu_limit_s)
 
-    def run(self, name: str, text: str, hours: float, series: Series | None = None) -> tuple[Path, str]:
+    def run(self, name: str, hours: float, series: Series) -> tuple[Path, str]:
         """The folder of a run, and what it said where it was refused or broke off."""
-        series = series or self.series(name, text)
         folder = series.out / name
         if read_summary(folder).get("status") not in BROKEN:
             try:
                 series.run(name, [], hours)
             except subprocess.CalledProcessError as error:
-                if error.returncode not in (REFUSED, UNPHYSICAL, SOIL_FAILED):
+                if error.returncode not in (REFUSED, UNPHYSICAL, SOIL_FAILED, TOO_LONG):
                     raise
-                if error.returncode == REFUSED:
-                    return folder, "refused"
+                if error.returncode == TOO_LONG:  # else it would go on from there the next time
+                    shutil.rmtree(folder, ignore_errors=True)
+                if error.returncode in ENDS:
+                    return folder, ENDS[error.returncode]
         return folder, last_error(folder)
 
     def case(self, case: Case, scheme: Scheme, long: bool) -> tuple[list[Finding], str]:
@@ -116,7 +122,7 @@ class Runner:
         hours = case.long_h if long else case.short_h
         name = f"{case.name}-{scheme.name}-{'long' if long else 'short'}"
         text = scene_text(case, scheme, hours)
-        folder, message = self.run(name, text, hours, self.series(name, text, case.twin))
+        folder, message = self.run(name, hours, self.series(name, text, case.twin))
         reaches = {what: both[long] for what, both in case.reaches.items()}
         return judge(folder, hours, reaches, case.stress_MPa, case.neighbours), message
 
@@ -124,7 +130,7 @@ class Runner:
         """The short run, interrupted in the middle and resumed, against the one that was not."""
         text = scene_text(case, DEFAULT, case.short_h)
         series = self.series(f"{case.name}-{DEFAULT.name}-short", text, case.twin)
-        whole, _ = self.run(f"{case.name}-{DEFAULT.name}-short", text, case.short_h, series)
+        whole, _ = self.run(f"{case.name}-{DEFAULT.name}-short", case.short_h, series)
         parts = series.run(f"{case.name}-restart", [], case.short_h / 2)
         series.run(f"{case.name}-restart", [], case.short_h)
         try:
@@ -144,8 +150,10 @@ class Runner:
             changes = {**UNIFORM, **changes, **moduli(1.0)}
         hours = edge.hours(value)
         case = Case(edge.name, edge.meaning, changes, hours, hours)
-        folder, message = self.run(f"{edge.name}-{scheme.name}-{value:g}", scene_text(case, scheme, hours), hours)
-        if message == "refused":
+        name = f"{edge.name}-{scheme.name}-{value:g}"
+        series = self.series(name, scene_text(case, scheme, hours), cpu_limit_s=EDGE_LIMIT_S)
+        folder, message = self.run(name, hours, series)
+        if message in ENDS.values():
             return False, message
         failed = [finding.criterion.name for finding in judge(folder, hours, {}) if not finding.passed]
         return not failed, ", ".join(failed)
@@ -237,7 +245,7 @@ def main() -> int:
         if not options.quick:
             report.draw_map(case_rows, edge_rows, PROJECT / "docs" / "images" / "stability.png")
             remarks = {case.name: case.remark for case in cases()}
-            report.write_page(case_rows, edge_rows, remarks, PROJECT / "docs" / "stability.md")
+            report.write_page(case_rows, edge_rows, remarks, EDGE_LIMIT_S, PROJECT / "docs" / "stability.md")
         elif options.record:
             report.write_rows(RECORDED, report.recorded_bounds(case_rows, edge_rows))
     except subprocess.CalledProcessError as error:

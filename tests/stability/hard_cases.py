@@ -79,6 +79,7 @@ class Case:
     neighbours: float | None = None  # that are enough, where 6 (3D: 12) are not to be had
     twin: tuple[str, ...] | None = None  # runs against the plate of tests/stability/twin_soil.cpp, with these arguments
     needs_yade: bool = False
+    with_inertia: Changes = field(default_factory=dict)  # what a scheme with inertia, the paper's, needs besides
     remark: str = ""  # why it fails, where it does and is known
     restart: bool = False  # also interrupted in the middle and resumed, in the tests
 
@@ -87,7 +88,8 @@ def scene_text(case: Case, scheme: Scheme, hours: float, more: Changes | None = 
     """The scene file of a case under a scheme that runs for some hours."""
     run = {"scene.name": case.name, "scene.duration_h": hours, "output.every_h": hours / FRAMES}
     scene = with_changes(BASE, {**case.changes, **run})
-    return scenes.scene_text(with_changes(with_changes(scene, scheme.changes), more or {}))
+    needs = case.with_inertia if scheme is PAPER else {}
+    return scenes.scene_text(with_changes(with_changes(scene, scheme.changes), {**needs, **(more or {})}))
 
 
 def plane(x_mm: float, angle_deg: float, y_mm: float = 0.0, friction: float = 0.2) -> dict[str, Any]:
@@ -130,10 +132,10 @@ def slender(length_mm: float, friction: float) -> Changes:
     return {**SLENDER, "root.length_mm": length_mm, "obstacle": [plane(length_mm + 0.01, 90.0, friction=friction)]}
 
 
-# A root that soil's plate stops, with inertia: docs/stability.md was measured so.
-INERTIA: Changes = {"numerics": {"stepper": "symplectic", "step_h": 1e-4}}
+# A window an interval for a scheme with inertia at soil's plate; steps that end in balance take the usual interval.
+AT_THE_PLATE: Changes = {"numerics.step_h": 1e-4}
 
-# A root 6 across among some 50 grains of a third of its width, as scenarios/soil_tutorial.toml.
+# A root 6 across among some 50 grains of a third of its width, as scenarios/soil_tutorial.toml: a step an interval.
 GRAINS: Changes = {
     "root.length_mm": 1.2,
     "root.radius_mm": 0.3,
@@ -142,15 +144,14 @@ GRAINS: Changes = {
     "division": None,
     "soil": {"box_from_mm": [0.4, -1.2], "box_to_mm": [2.6, 1.2], "walls": "mixed", "confining_pressure_MPa": 0.04,
              "d_range_mm": [0.3, 0.4], "E_MPa": 250.0, "friction_deg": 30.0, "root_friction_deg": 20.0,
-             "contact": {"interval_h": 2e-3, "ramp_h": 0.005}},
-    "numerics": {"stepper": "symplectic", "step_h": 2e-4},
+             "contact": {"interval_h": 4e-3, "ramp_h": 0.005}},
 }  # fmt: skip
+AMONG_GRAINS: Changes = {"numerics.step_h": 2e-4, "soil.contact.interval_h": 2e-3}  # with inertia
 
 
-# Why two cases fail: a property of the law, not of the numerics.
+# Why three cases fail: a property of the law, not of the numerics.
 LOCKED = ("The law lets tissue yield in tension only: a cell compressed beyond that locks and carries what its "
-          "neighbours, which yield, do not, whatever the gradient, the kernel, the step or the cell size; if it "
-          "yielded as well, the noise were ")  # fmt: skip
+          "neighbours, which yield, do not")  # fmt: skip
 
 
 def cases() -> list[Case]:
@@ -183,7 +184,9 @@ def cases() -> list[Case]:
              {"divisions": (20, 100)}),
         Case("lambda_001", "lambda0 times 0.01: 0.004 /h", {"growth.lambda0_ug_mm3_h": 4.34e3}, 2.0, 20.0),
         Case("irregular", "volumes vary 10-fold, centres jittered by 0.3 of the spacing",
-             {"root.size_variation": 0.82, "root.jitter": 0.3}, 2.0, 20.0, {"divisions": (20, 200)}, restart=True),
+             {"root.size_variation": 0.82, "root.jitter": 0.3}, 2.0, 20.0, {"divisions": (20, 200)}, restart=True,
+             remark="quiet for 17 h (0.31); then it has curled until it nearly meets itself. " + LOCKED + ". With "
+             "steps of 0.02 h it curls less: 0.44"),
         Case("one_wide", "one cell wide", width(1), 2.0, 20.0, {"divisions": (3, 30)}),
         Case("two_wide", "two cells wide", width(2), 2.0, 20.0, {"divisions": (6, 60)},
              neighbours=5.0),  # a corner's on the lattice: two in its row, three in the other
@@ -198,7 +201,8 @@ def cases() -> list[Case]:
              {"contact_N": (0.01, 0.01)}),
         Case("corner_beside_axis", "the corner lies a cell beside the axis", in_contact(corner(0.62, 0.02)), 0.6, 4.0,
              {"contact_N": (1e-3, 1e-3)},
-             remark="the corner presses the tip aside and the growth zone folds. " + LOCKED + "0.27"),
+             remark="the corner presses the tip aside and the growth zone folds. " + LOCKED + ": 0.7 to 1.4 whatever "
+             "the gradient, the kernel, the step or the cell size, with inertia 1.1"),
         Case("appears_in_contact", "a wall that reaches a tenth of a cell into the tip at the start",
              in_contact(plane(0.598, 90.0)), 0.3, 4.0, {"contact_N": (0.05, 0.05)},
              stress_MPa=1020.0 * 0.002 / 0.6),
@@ -223,15 +227,21 @@ def cases() -> list[Case]:
         Case("microscopy_3d", "3D: 1500 irregular cells from a microscopy file, neighbours touch",
              {**SPACE, "root": {"cells_file": str(PROJECT / "scenarios" / "cells" / "root_tip.csv"), "tip_axis": "+x"}},
              0.05, 1.5),
-        Case("soil_arrested", "soil's plate arrests the root for 10 h", INERTIA, 0.6, 10.5,
-             {"contact_N": (0.1, 0.1)}, twin=(), restart=True,
-             remark="quiet for 9 h (0.35); then the growth zone, which yields, folds. " + LOCKED + "0.40"),
-        Case("soil_release", "soil's plate arrests the root for 0.2 h and lets go at once", INERTIA,
-             0.6, 2.0, {"contact_N": (0.1, 0.1), "stretch": (1.03, 1.2)}, twin=("--gone-at", "0.35")),
+        Case("soil_arrested", "soil's plate arrests the root for 10 h", {}, 0.6, 10.5,
+             {"contact_N": (0.1, 0.1)}, twin=(), restart=True, with_inertia=AT_THE_PLATE,
+             remark="quiet for 9 h (0.36); then the growth zone, which yields, folds. " + LOCKED + "; with a step of "
+             "0.001 h the same, with inertia 0.49"),
+        Case("soil_release", "soil's plate arrests the root for 0.2 h and lets go at once", {},
+             0.6, 2.0, {"contact_N": (0.1, 0.1), "stretch": (1.03, 1.2)}, twin=("--gone-at", "0.35"),
+             with_inertia=AT_THE_PLATE),
         Case("soil_stiff", "YADE: grains 20 times as stiff as usual, root in contact from the start",
-             {**GRAINS, "soil.E_MPa": 5000.0}, 0.02, 0.5, {"contact_N": (1e-3, 0.01)}, needs_yade=True),
+             {**GRAINS, "soil.E_MPa": 5000.0}, 0.02, 0.5, {"contact_N": (1e-3, 0.01)}, needs_yade=True,
+             with_inertia=AMONG_GRAINS),
         Case("soil_squeezed", "YADE: grains between the tip and a wall that stands still two grains ahead",
-             {**GRAINS, "soil.box_to_mm": [2.0, 1.2]}, 0.02, 2.0, {"contact_N": (1e-3, 0.15)}, needs_yade=True),
+             # the force varies as grains give way, up to 0.10 to 0.18 N/mm with any interval, and with inertia
+             {**GRAINS, "soil.box_to_mm": [2.0, 1.2]}, 0.02, 2.0, {"contact_N": (1e-3, 0.08)}, needs_yade=True,
+             with_inertia=AMONG_GRAINS),
         Case("soil_servo", "YADE: servo walls on all sides of some 50 grains, at a tenth of the usual pressure",
-             {**GRAINS, "soil.walls": "servo", "soil.confining_pressure_MPa": 0.004}, 0.02, 0.5, needs_yade=True),
+             {**GRAINS, "soil.walls": "servo", "soil.confining_pressure_MPa": 0.004}, 0.02, 0.5, needs_yade=True,
+             with_inertia=AMONG_GRAINS),
     ]  # fmt: skip

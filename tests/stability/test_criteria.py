@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hard_cases import DEFAULT, PAPER, cases, scene_text
-from rootsoil_tools import criteria
+from rootsoil_tools import criteria, stability_report
 from rootsoil_tools.runs import Frame
 
 SIZE_MM = 0.02
@@ -144,3 +144,21 @@ def test_scenes_are_toml():
         paper = tomllib.loads(scene_text(case, PAPER, case.short_h))
         assert paper["tissue"]["law"] == "pressure_deviator" and "non_affine_control" not in paper
     assert len({case.name for case in cases()}) == len(cases())
+
+
+def test_only_what_moves_masses_is_given_a_step():
+    """Soil cases end every interval in balance; the paper's scheme keeps the small steps that it needs."""
+    for case in (case for case in cases() if case.with_inertia):
+        assert "numerics" not in tomllib.loads(scene_text(case, DEFAULT, case.short_h))
+        assert tomllib.loads(scene_text(case, PAPER, case.short_h))["numerics"]["step_h"] <= 2e-4
+    assert {case.name for case in cases() if case.with_inertia} == {c.name for c in cases() if "soil" in c.name}
+
+
+def test_an_edge_says_how_it_ended():
+    """Stable to the end, refused, failed, or given up."""
+    row = stability_report.EdgeRow("ratio_down", "-", "E_R/E_A, downwards", "default", 1.0, 0.01)
+    assert row.ended(0.01, None, "").verdict() == "stable to 0.01, the furthest tried"
+    assert row.ended(0.1, 0.09, "neighbours").verdict() == "stable to 0.1; at 0.09 fails: neighbours"
+    assert row.ended(0.1, 0.09, "refused").verdict() == "stable to 0.1; at 0.09 refused"
+    too_long = row.ended(0.1, 0.09, f"{stability_report.TOO_LONG} within 60 s")
+    assert too_long.verdict() == "stable to 0.1; at 0.09 not finished within 60 s"

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -37,3 +39,13 @@ def test_another_build_of_the_same_version_is_another_program(tmp_path: Path, ca
     program.write_text(FAKE + "# another build\n")
     with pytest.raises(RunError, match="another build of the program"):
         run()
+
+
+def test_a_run_that_takes_too_long_is_ended(tmp_path: Path):
+    program, scene = tmp_path / "rootsoil", tmp_path / "scene.toml"
+    program.write_text("#!/usr/bin/python3\nwhile True:\n    pass\n")
+    program.chmod(0o755)
+    scene.write_text("[scene]\n")
+    with pytest.raises(subprocess.CalledProcessError) as ended:
+        Series(scene, tmp_path / "out", program, cpu_limit_s=1).run("a", [], until_h=1.0)
+    assert ended.value.returncode == -signal.SIGXCPU

@@ -27,8 +27,9 @@ class Row:
     measure: str
     status: str
     error: float
-    inertia_error: float
+    unbalanced: float
     cpu_s: float
+    start_s: float
     wall_s: float
     cells: float
     steps: float
@@ -37,6 +38,11 @@ class Row:
     program: str
     values: str
     remark: str
+
+    @property
+    def time_s(self) -> float:
+        """Processor time without that of starting the program, which a longer run does not have again."""
+        return self.cpu_s - self.start_s
 
 
 def place_of(row: Row) -> tuple[str, str, int, str]:

@@ -11,7 +11,7 @@ import csv
 import json
 import math
 import subprocess
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,12 @@ from rootsoil_tools.runs import Run, read_summary
 from rootsoil_tools.scenes import Changes, Scene, scene_text, with_changes
 
 SAMPLES = 3  # of each soil
+# what is measured; to write all fields would take longer than the steps between two frames
+FIELDS = ["position", "distance_to_tip", "axis", "shape", "axial_strain_rate", "clamped", "cell_id", "volume"]
+STEPPER, IN_BALANCE = "numerics.stepper", "quasi_static"  # key; the program's default
+TOLERANCE = "numerics.force_tolerance"
+# The force across the column is 8e-5 of the pressure's on a cell, less than what balanced leaves out of balance.
+EULER_TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True)
@@ -36,16 +42,22 @@ class Choice:
     level: float = math.nan
     step_factor: float | None = None
 
+    @property
+    def has_inertia(self) -> bool:
+        """Whether it moves masses instead of looking for balance."""
+        return bool(self.changes.get(STEPPER, IN_BALANCE) != IN_BALANCE)
+
 
 @dataclass(frozen=True)
 class Cost:
-    """What the runs did, mean over samples: cells, steps, simulated hours, their own inertia error (share of p,
-    mean over the second half). NaN where there is none."""
+    """What the runs did, mean over samples: cells, steps, simulated hours, what they say themselves is out of balance
+    (share of p, mean over the second half). NaN where there is none. Processor time of starting: of all samples."""
 
     cells: float
     steps: float
     hours: float = math.nan
-    inertia_error: float = math.nan
+    unbalanced: float = math.nan
+    start_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -88,9 +100,21 @@ def usual_step_h(program: Path, scene_file: Path) -> float:
 
 def run_cost(run: Run, summary: Mapping[str, Any]) -> Cost:
     """Of one run."""
-    inertia = run.history()["inertia_error"]
+    history = run.history()
+    own = history["inertia_error" if "inertia_error" in history else "force_imbalance"]
     cells = (summary["cells_start"] + summary["cells_end"]) / 2.0
-    return Cost(cells, summary["steps"], summary["time_h"], float(inertia[len(inertia) // 2 :].mean()))
+    unbalanced = float(own[len(own) // 2 :].mean())
+    return Cost(cells, summary["steps"], summary["time_h"], unbalanced, summary["cpu_start_s"])
+
+
+def mean_cost(costs: Sequence[Cost]) -> Cost:
+    """Of the samples of a problem."""
+
+    def mean(key: str) -> float:
+        return float(np.mean([getattr(c, key) for c in costs]))
+
+    start_s = sum(c.start_s for c in costs)
+    return Cost(mean("cells"), mean("steps"), mean("hours"), mean("unbalanced"), start_s)
 
 
 def scene_problem(
@@ -100,19 +124,21 @@ def scene_problem(
     scene: Callable[[int], Scene],
     read: Callable[[Run], Values],
     soil: bool = False,
+    with_inertia: Callable[[int], Changes] = lambda across: {},
 ) -> Problem:
-    """A problem that `rootsoil run` solves, with soil once for each sample. `scene` of the cells across."""
+    """A problem that `rootsoil run` solves, with soil once for each sample. `scene` of the cells across, and what a
+    stepper with inertia needs besides."""
     names = [f"sample{seed}" for seed in range(1, SAMPLES + 1)] if soil else ["run"]
 
     def prepare(programs: Path, folder: Path, across: int, choice: Choice) -> list[list[str]]:
         commands = []
         for seed, out in enumerate(names, 1):
             own, file = with_changes(scene(across), {"soil.seed": seed} if soil else {}), folder / f"{out}.toml"
+            own = with_changes(with_changes(own, with_inertia(across) if choice.has_inertia else {}), choice.changes)
             file.write_text(scene_text(own), encoding="utf-8")
-            changes = dict(choice.changes)
             if choice.step_factor is not None:
-                changes["numerics.step_h"] = choice.step_factor * usual_step_h(programs / "rootsoil", file)
-            file.write_text(scene_text(with_changes(own, changes)), encoding="utf-8")
+                step_h = choice.step_factor * usual_step_h(programs / "rootsoil", file)
+                file.write_text(scene_text(with_changes(own, {"numerics.step_h": step_h})), encoding="utf-8")
             commands.append(
                 [str(programs / "rootsoil"), "run", f"{out}.toml", "--out", out, "--threads", "1", "--quiet"]
             )
@@ -122,19 +148,18 @@ def scene_problem(
         runs = [Run(folder / out) for out in names]
         values = [read(run) for run in runs]
         costs = [run_cost(run, read_summary(run.folder)) for run in runs]
-        mean = Cost(
-            *(float(np.mean([getattr(c, key) for c in costs])) for key in ("cells", "steps", "hours", "inertia_error"))
-        )
-        return {key: [x for v in values for x in v[key]] for key in values[0]}, mean
+        return {key: [x for v in values for x in v[key]] for key in values[0]}, mean_cost(costs)
 
     return Problem(name, title, measures, prepare, read_folder, soil)
 
 
-def beam_problem(name: str, title: str, meaning: str) -> Problem:
-    """A beam of the bending tests: build/release/bending_problem."""
+def beam_problem(name: str, title: str, meaning: str, in_balance: Changes) -> Problem:
+    """A beam of the bending tests: build/release/bending_problem, which has inertia unless it is told otherwise.
+    `in_balance`: what steps that end in balance need besides."""
 
     def prepare(programs: Path, folder: Path, across: int, choice: Choice) -> list[list[str]]:
-        changes = dict(choice.changes)
+        own: Changes = {} if choice.has_inertia else {STEPPER: IN_BALANCE, **in_balance}
+        changes: dict[str, Any] = {**own, **choice.changes}
         if "non_affine_control" in changes:  # an argument cannot take a section away
             del changes["non_affine_control"]
             changes |= {"non_affine_control.damping": 0.0, "non_affine_control.stiffness": 0.0}
@@ -180,18 +205,16 @@ def penetrometer_problem(
 def root_scene(
     name: str, hours: float, every_h: float, length_mm: float, diameter_mm: float, across: int, *more: Changes
 ) -> Scene:
-    """A root under 1 MPa, and changes. With inertia, unless they say otherwise: the study measures its errors."""
+    """A root under 1 MPa, and changes."""
     base = {
         "scene": {"name": name, "duration_h": hours},
         "root": {"length_mm": length_mm, "radius_mm": diameter_mm / 2.0, "cell_size_mm": diameter_mm / across},
         "tissue": {"E_axial_MPa": 1020.0},
         "pressure": {"differential_MPa": 1.0},
         "non_affine_control": {},
-        "output": {"every_h": every_h},
+        "output": {"every_h": every_h, "checkpoint_every_h": hours, "fields": FIELDS},
     }
-    scene = with_changes(base, {key: value for changes in more for key, value in changes.items()})
-    scene.setdefault("numerics", {}).setdefault("stepper", "symplectic")
-    return scene
+    return with_changes(base, {key: value for changes in more for key, value in changes.items()})
 
 
 def stiffening(x_e_mm: float, s_e_per_mm: float, c_e: float) -> Changes:
@@ -238,22 +261,28 @@ def plane(x_mm: float, normal: tuple[float, float], friction: float) -> dict[str
 
 
 def thrust_scene(across: int) -> Scene:
-    """A root whose flat tip touches a plate; it comes to rest, and the step only has to leave time for it. The damping
-    is about twice the slowest axial frequency, which goes as the inertia's 1/step."""
-    step_h = 1.6e-4 / across
-    own = {
-        "root.cap": False,
-        "obstacle": [plane(0.8, (-1.0, 0.0), 0.0)],
-        "numerics": {"start": "rest", "step_h": step_h, "mass_damping_per_h": 0.24 / across / step_h},
-    }
+    """A root whose flat tip touches a plate, and eight times as long as it takes to come to rest."""
+    own = {"root.cap": False, "obstacle": [plane(0.8, (-1.0, 0.0), 0.0)], "numerics": {"start": "rest"}}
     return root_scene("thrust", 0.02, 0.02, 0.8, 0.1, across, STIFF, softening(4.34e5, 0.1, 0.2, -1.0), own)
 
 
+def thrust_with_inertia(across: int) -> Changes:
+    """Steps that leave time to come to rest. The damping is about twice the slowest axial frequency, which goes as the
+    inertia's 1/step."""
+    step_h = 1.6e-4 / across
+    return {"numerics.step_h": step_h, "numerics.mass_damping_per_h": 0.24 / across / step_h}
+
+
 def path_scene(across: int) -> Scene:
-    """A root that grows along a plane at 45 degrees, in small steps: contact is to be quasi-static, not an impact."""
+    """A root that grows along a plane at 45 degrees."""
     profiles = (stiffening(0.05, 40.0, 0.2), softening(4.34e5, 0.1, 0.2, -0.95, (0.7, 0.2)))
-    own = {"obstacle": [plane(1.03, (-0.7071, 0.7071), 0.2)], "numerics.step_h": 1.5e-4 / across}
+    own = {"obstacle": [plane(1.03, (-0.7071, 0.7071), 0.2)]}
     return root_scene("path", 0.75, 0.25, 1.0, 0.12, across, *profiles, own)
+
+
+def path_with_inertia(across: int) -> Changes:
+    """Small steps: contact is to be quasi-static, not an impact."""
+    return {"numerics.step_h": 1.5e-4 / across}
 
 
 def soil_box(
@@ -272,15 +301,19 @@ def soil_box(
 
 
 def soil_scene(across: int) -> Scene:
-    """A root among some hundred grains. Whole windows of 20 steps fit into the interval."""
+    """A root among some hundred grains. A step that ends in balance is a coupling interval."""
     profiles = (stiffening(0.1, 20.0, 0.2), softening(4e5, 0.2, 0.4, -0.95, (1.1, 0.3)))
     soil = {
         **soil_box((0.8, 2.8), 1.0, "mixed", 0.04, 100.0),
         "d_range_mm": [0.15, 0.25],
         "contact": {"interval_h": 4e-3},
     }
-    own = {"scene.dimension": 2, "soil": soil, "numerics.step_h": 6e-4 / across}
-    return root_scene("soil", 0.6, 0.02, 1.6, 0.4, across, *profiles, own)
+    return root_scene("soil", 0.6, 0.02, 1.6, 0.4, across, *profiles, {"scene.dimension": 2, "soil": soil})
+
+
+def soil_with_inertia(across: int) -> Changes:
+    """Whole windows of 20 steps fit into the interval."""
+    return {"numerics.step_h": 6e-4 / across}
 
 
 PENETROMETER: Scene = {
@@ -390,9 +423,14 @@ def all_problems() -> list[Problem]:
             lambda across: growth_scene(3.0, across, 4.0),
             lambda run: answers.sleep_values(run, 1.0),
         ),
-        beam_problem("cantilever", "Cantilever", "deflection beyond one depth from the clamp, against Timoshenko's"),
         beam_problem(
-            "euler", "Euler load", "load of the part beyond one depth from the clamp, against Euler's and Engesser's"
+            "cantilever", "Cantilever", "deflection beyond one depth from the clamp, against Timoshenko's", {}
+        ),
+        beam_problem(
+            "euler",
+            "Euler load",
+            "load of the part beyond one depth from the clamp, against Euler's and Engesser's",
+            {TOLERANCE: EULER_TOLERANCE},
         ),
         scene_problem(
             "thrust",
@@ -400,6 +438,7 @@ def all_problems() -> list[Problem]:
             (Measure("arrest stress", "stress that stops growth, against p (1 - nu_A)"),),
             thrust_scene,
             answers.thrust_errors,
+            with_inertia=thrust_with_inertia,
         ),
         scene_problem(
             "path",
@@ -411,6 +450,7 @@ def all_problems() -> list[Problem]:
             ),
             path_scene,
             answers.path_points,
+            with_inertia=path_with_inertia,
         ),
         penetrometer_problem(
             "hertz",
@@ -437,5 +477,6 @@ def all_problems() -> list[Problem]:
             soil_scene,
             lambda run: answers.soil_values(run, 0.1),
             soil=True,
+            with_inertia=soil_with_inertia,
         ),
     ]

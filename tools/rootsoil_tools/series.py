@@ -6,6 +6,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+import resource
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -32,6 +33,7 @@ class Series:
     program: Path = PROGRAM
     arguments: Sequence[str] = ()
     threads: int | None = None
+    cpu_limit_s: int | None = None  # of a run; SIGXCPU ends it
     program_sha256: str = field(init=False)  # a build is known by its bytes: two may say the same version
 
     def __post_init__(self) -> None:
@@ -61,6 +63,11 @@ class Series:
         note.write_text(json.dumps(request, indent=2) + "\n", encoding="utf-8")
         return folder
 
+    def _limit(self) -> None:
+        """In the program's process, before it begins."""
+        if self.cpu_limit_s is not None:
+            resource.setrlimit(resource.RLIMIT_CPU, (self.cpu_limit_s, self.cpu_limit_s + 5))
+
     def _command(self, verb: str, folder: Path, settings: Sequence[str]) -> list[str]:
         sets = [part for setting in settings for part in ("--set", setting)]
         return [str(self.program), verb, str(self.scene), "--out", str(folder), *sets]
@@ -77,7 +84,7 @@ class Series:
         if (folder / "checkpoint.h5").exists():
             command.append("--resume")
         print(f"{name}: running into {folder}", flush=True)
-        subprocess.run(command, check=True, stdin=subprocess.DEVNULL)
+        subprocess.run(command, check=True, stdin=subprocess.DEVNULL, preexec_fn=self._limit)  # noqa: PLW1509
         return folder
 
     def penetrometer(self, name: str, settings: Sequence[str]) -> Path:
