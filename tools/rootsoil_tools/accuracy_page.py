@@ -320,16 +320,15 @@ What the tables below say:
 - **Steppers.** For the same error the default takes a fifth to a seventh of the explicit stepper's time in strain under
   pressure and under Euler's load, a fifth for a cantilever, a third for a root on a plate, and a fiftieth along an
   obstacle, where the explicit one needs 40,000 steps (8 across) so that contact is no impact. In free growth it takes
-  two thirds: the explicit one's inertia is compensated there, and four to eight times balanced's step does. Lengths of
-  dividing cells to 1 % cost about the same with both. The predictor-corrector takes nearly twice the explicit one's
+  two thirds: the explicit one's inertia is compensated there, and four to eight times balanced's step does. The predictor-corrector takes nearly twice the explicit one's
   time for the same result. The paper's whole scheme takes more than ten times the default's time for isotropic strain;
   elsewhere it is refused, or does not bend as it should.
 - **Cells across** decide the error in growth, bending and along an obstacle. Up to 16 across the default's time goes
   with their number squared, since its step does not follow the cell (explicit: cubed). Strain under pressure is exact
   to 0.1 % with any number of cells.
-- The **step** decides when cells divide: at the end of the step in which they pass their threshold, so that their
-  lengths are off by most of what a step strains (balanced: 4 %). A quarter of balanced's step leaves 0.6 % for twice
-  the time; `reference` has half of it, and strain rate and tip speed gain nothing below that. A root that is stopped
+- The **step** hardly matters in growth: half of balanced's (`reference`) has seven eighths of its error in the strain
+  rate, and nothing is gained below that. Cell lengths do not feel it, since cells divide at the start of the step in
+  which they pass their threshold, and are at its end as if each had divided in its time. A root that is stopped
   within a single step is off by 0.1 to 0.6 % of its stress; within four steps by 0.02 to 0.09 %.
 - The **force tolerance** buys nothing in growth and contact between 1e-3 and 1e-6, and costs nothing. What small forces
   bend needs it: a force must be large against the tolerance times p and a cell's face. A cantilever bent by 0.2 % of
@@ -342,7 +341,7 @@ What the tables below say:
 - Non-affine control costs a sixth of the time and more; bending needs it, and a column finds no balance without.
 - A path along an obstacle needs cells, 8 across; kernel, step and tolerance hardly matter to it.
 - With the explicit stepper keep the compensation of inertia: without it the same step has ten times the error in
-  growth. Short windows have an eighth of the error in cell lengths for more time: cells divide between windows.
+  growth.
 - Sleep (`[sleep]`) takes about half the time where most of a small root is mature. With its default
   tolerances it changes growth by a thousandth of a percent, with 0.001 /h by 0.014 %.
 - In soil keep the inertial number at 0.01 or below (at 0.1 forces are about twice as large) and the interval at 0.008 h
