@@ -176,6 +176,7 @@ void print(const Json& found) {
              found["step_h"].get<double>(), found["steps"].get<double>(), found["accuracy"].get<std::string>());
   fmt::print("{:.3g} cells across: discretisation error about {:.2g} %; {}\n", found["cells_across"].get<double>(),
              100.0 * found["discretisation_error"].get<double>(), error_text(found));
+  if (is_coarser_than_measured(found["cells_across"].get<double>())) fmt::print("{}\n", coarser_than_measured);
   if (found.contains("preset_inertia_error")) {
     fmt::print(
         "{} was measured in growth, 8 cells across: strain rate {:.2g} % off, inertia error {:.2g} %, {:.2g} ms for a "

@@ -494,6 +494,7 @@ ExitStatus Run<Dim>::go() {
       unbalanced_.what(), 100.0 * unbalanced_error_, 100.0 * unbalanced_max_,
       100.0 * discretisation_error(scene_.numerics, model().initial.across), name_of(scene_.numerics.accuracy),
       model().initial.across);
+  if (is_coarser_than_measured(model().initial.across)) log_.warning("{}", coarser_than_measured);
   if (const std::int64_t unstable = solver.effort().unstable_steps; unstable > 0) {
     log_.warning(
         "{} steps ended in a balance that a small push would end, and none was found beside it: the root may have "

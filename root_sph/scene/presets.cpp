@@ -64,4 +64,9 @@ double discretisation_error(const NumericsSection& numerics, double cells_across
                                 : record.error_in_balance * std::pow(measured_across / cells_across, 1.2);
 }
 
+bool is_coarser_than_measured(double cells_across) {
+  constexpr double least = 3.5;  // a lattice fits some tenths of a cell more or fewer
+  return cells_across < least;
+}
+
 }  // namespace rootsoil

@@ -39,4 +39,10 @@ PresetRecord preset_record(Accuracy accuracy);
 /// The same error with so many cells across.
 double discretisation_error(const NumericsSection& numerics, double cells_across);
 
+/// Whether discretisation_error goes beyond what was measured, 4 to 16 cells across, where it may be far too small.
+bool is_coarser_than_measured(double cells_across);
+inline constexpr const char* coarser_than_measured =
+    "fewer than four cells across were never measured: contact and bending may be off by far more than this (one cell "
+    "across bends a hundredth as far as it should)";
+
 }  // namespace rootsoil
