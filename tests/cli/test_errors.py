@@ -66,3 +66,14 @@ def test_the_stated_error(program: Program, accuracy: str):
     error = math.sqrt(sum(e * e for e in errors) / len(errors))
     stated = summary(program.folder / "out")["discretisation_error"]
     assert 0.67 * stated < error < 1.33 * stated, error
+
+
+def test_few_cells_across_are_said(program: Program):
+    """Below four cells across nothing was measured, and both `check` and the run say so."""
+    text = GROWTH.replace("duration_h = 3", "duration_h = 0.5")
+    scene = program.scene(text[: text.index("[division]")] + text[text.index("[non_affine_control]") :])
+    for across, said in ((2, True), (8, False)):
+        size = ("--set", f"root.cell_size_mm={0.08 / across}")
+        assert ("fewer than four cells across" in program("check", scene, *size).out) == said
+        done = program("run", scene, "--out", f"out_{across}", *size)
+        assert done.status == 0 and ("fewer than four cells across" in done.err) == said, done.err

@@ -68,10 +68,16 @@ std::string SoilBooks::closing_remark(double time_h, double length_mm) const {
   const double hours = time_h - from_h_;
   if (from_h_ < 0.0 || hours <= 0.0) return "";
   const double measured = (length_mm - from_mm_) / hours;
+  constexpr double late = 0.1;  // forces that build up are felt an interval late: some per cent
+  const double apart = soil_work_Nmm_ > 0.0 ? 1.0 - root_work_Nmm_ / soil_work_Nmm_ : 0.0;
   return fmt::format(
       "soil: tip speed {:.4f} mm/h; from the soil's forces it should be {:.4f} mm/h, V0 (1 - F/(p (1 - "
-      "nu_A) W)) along the root; work of the root {:.4g} N mm, received by the soil {:.4g} N mm",
-      measured, expected_path_mm_ / hours, root_work_Nmm_, soil_work_Nmm_);
+      "nu_A) W)) along the root; work of the root {:.4g} N mm, received by the soil {:.4g} N mm{}",
+      measured, expected_path_mm_ / hours, root_work_Nmm_, soil_work_Nmm_,
+      std::abs(apart) > late ? fmt::format(", {:.0f} % apart: root and soil do not feel the same forces, exchange them "
+                                           "more often (soil.contact.interval_h) or run for longer",
+                                           100.0 * std::abs(apart))
+                             : std::string());
 }
 
 void SoilBooks::save(std::map<std::string, std::vector<double>>& reals) const {
