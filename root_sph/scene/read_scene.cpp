@@ -296,7 +296,9 @@ class Reader {
     };
     const auto number = [&](const toml::node& n) {
       const bool is_number = n.is_integer() || n.is_floating_point();
-      if (!is_number) wrong(n, "this is not a number", n.is_string() ? "write it without quotes, with a digit on both sides of the point" : "");
+      if (!is_number)
+        wrong(n, "this is not a number",
+              n.is_string() ? "write it without quotes, with a digit on both sides of the point" : "");
       const double value = *n.value<double>();
       return value;
     };
