@@ -317,12 +317,13 @@ axial force over p times the section), mean over the run's second half.
 {presets}
 What the tables below say:
 
-- **Steppers.** For the same error the default takes a fifth to a seventh of the explicit stepper's time in strain under
-  pressure and under Euler's load, a fifth for a cantilever, a third for a root on a plate, and a fiftieth along an
+- **Steppers.** For the same error the default takes a fifth to a tenth of the explicit stepper's time in strain under
+  pressure and under Euler's load, a sixth for a cantilever, half for a root on a plate, and a fiftieth along an
   obstacle, where the explicit one needs 40,000 steps (8 across) so that contact is no impact. In free growth it takes
-  two thirds: the explicit one's inertia is compensated there, and four to eight times balanced's step does. The predictor-corrector takes nearly twice the explicit one's
-  time for the same result. The paper's whole scheme takes more than ten times the default's time for isotropic strain;
-  elsewhere it is refused, or does not bend as it should.
+  two thirds: the explicit one's inertia is compensated there, and four to eight times balanced's step does. Lengths of
+  dividing cells to 0.1 % cost a third. The predictor-corrector takes nearly twice the explicit one's time for the same
+  result. The paper's whole scheme takes more than ten times the default's time for isotropic strain; elsewhere it is
+  refused, or does not bend as it should.
 - **Cells across** decide the error in growth, bending and along an obstacle. Up to 16 across the default's time goes
   with their number squared, since its step does not follow the cell (explicit: cubed). Strain under pressure is exact
   to 0.1 % with any number of cells.
