@@ -27,6 +27,7 @@ libgtest-dev         tests of the program
 libgmock-dev         tests of the program: matchers
 libbenchmark-dev     benchmarks
 python3-pytest       tests of the tools and of the command line
+python3-pytest-xdist two of these tests at once
 "
 # A scene without [soil] starts no process and needs none of this.
 soil_packages="

@@ -38,6 +38,7 @@ PACKAGES: dict[str, tuple[set[str], set[str], set[str]]] = {
 POSIX = {"fcntl.h", "unistd.h", "sys", "poll.h", "spawn.h", "netinet", "arpa"}
 WITH_CMAKE = {"Threads"}
 BUILD_TOOLS = {"g++", "cmake", "ninja-build"}
+OPTIONS = {"--numprocesses": "python3-pytest-xdist"}  # of tools/test.sh, by the package that pytest has them from
 
 
 def tracked(*patterns: str) -> list[Path]:
@@ -115,8 +116,11 @@ def test_a_run_gets_what_it_needs_and_nothing_else():
 
 
 def test_tests_get_what_they_add():
-    """--test is what only the tests name."""
-    assert listed("test_packages") == used(in_tests=True) - used(in_tests=False) - BUILD_TOOLS
+    """--test is what only the tests name, in themselves or where they are called."""
+    call = (PROJECT / "tools" / "test.sh").read_text()
+    plugins = {package for option, package in OPTIONS.items() if option in call}
+    assert listed("test_packages") - plugins == used(in_tests=True) - used(in_tests=False) - BUILD_TOOLS
+    assert plugins <= listed("test_packages")
 
 
 def test_every_option_has_its_own_list():
