@@ -28,7 +28,7 @@ class BandAssembly {
  private:
   struct FreeNode {
     std::int32_t place, node;
-    auto operator<=>(const FreeNode&) const = default;
+    bool operator<(const FreeNode& other) const { return place < other.place; }
   };
   /// Entry c Dim + d of a block is what displacements along c do to the forces along d.
   using Block = Eigen::Array<double, Dim * Dim, 1>;
