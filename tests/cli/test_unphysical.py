@@ -86,6 +86,7 @@ def test_a_step_that_is_none_is_refused(program: Program):
         assert not (program.folder / "out").exists()
 
 
+@pytest.mark.slow
 def test_cells_that_divide_without_end(program: Program):
     """A threshold that is tiny only where cells arrive later: cells divide window after window, and the run stops."""
     scene = program.scene(
