@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pytest
 from cli_support import FULL, SECTIONS, SMALL, Program, checkpoint, frames, history, replaced, same_results, summary
 
 UNPHYSICAL = 3
