@@ -59,17 +59,16 @@ inline void hold_loosely(BandCholesky& matrix) {
   for (std::int64_t c = 0; c < matrix.rows(); ++c) matrix.column(c)[0] += share * largest;
 }
 
-/// out[e] += sum_v a(v D + c, b) a(v D + d, b + e): what displacements along axis d do to the forces along axis c on
-/// node b, for the nodes from b on. D: Dim.
-template <int Voigts, int Dim>
-void add_product(const NodeRows<Voigts * Dim>& a, int c, int d, Eigen::Index b, double* __restrict out) {
-  const Eigen::Index stride = a.cols(), length = stride - b;
-  const double* const from = a.data() + b;
-  double factor[Voigts];
-  for (int v = 0; v < Voigts; ++v) factor[v] = from[(v * Dim + c) * stride];
+/// out[e] += sum_v a(v, column) a(v, column + e): a column of a^T a from its diagonal downwards.
+template <int Rows>
+void add_square(const NodeRows<Rows>& a, Eigen::Index column, double* __restrict out) {
+  const Eigen::Index stride = a.cols(), length = stride - column;
+  const double* const from = a.data() + column;
+  double factor[Rows];
+  for (int v = 0; v < Rows; ++v) factor[v] = from[v * stride];
   for (Eigen::Index e = 0; e < length; ++e) {
     double sum = 0.0;
-    for (int v = 0; v < Voigts; ++v) sum += factor[v] * from[(v * Dim + d) * stride + e];
+    for (int v = 0; v < Rows; ++v) sum += factor[v] * from[v * stride + e];
     out[e] += sum;
   }
 }

@@ -126,7 +126,7 @@ class LayerAssembly {
       if (p >= 0) add_motion(static_cast<Eigen::Index>(a), layers_.scalar[p], layers_.of_place[p] - first);
     }
     for (Eigen::Index m = 0; m < touched * modes; ++m) {
-      add_product<voigt_size<Dim>, 1>(strain_, 0, 0, m, coarse_.column(first * modes + m));
+      add_square<voigt_size<Dim>>(strain_, m, coarse_.column(first * modes + m));
     }
     if (share_.has_resistance()) add_resistance(free_.place[nodes[0].cell], first, touched);
   }

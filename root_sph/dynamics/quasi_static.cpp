@@ -15,7 +15,7 @@ namespace rootsoil {
 namespace {
 
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
-constexpr int most_adaptations = 10;
+constexpr int most_adaptations = 10;   // of friction to the balance
 constexpr int most_after_balance = 8;  // iterations after the first within the force's tolerance
 constexpr int mixed_iterations = 20;
 constexpr double most_strain = 0.2;    // of a pair's distance in one iteration
@@ -23,7 +23,7 @@ constexpr double short_strain = 5e-3;  // of a pair's distance in a step after w
 // Stability: stiffness of the softest mode over the tissue's own; displacements over a cell's size; thrust over p times
 // the held cells' faces.
 constexpr double least_stiffness = 1e-3, ample_stiffness = 0.5, small_move = 1e-3, first_move = 0.1;
-constexpr double restless_move = 1e-2;
+constexpr double restless_move = 1e-2;  // that cells still want to make, over their size, under forces that balance
 constexpr double least_thrust = 1e-4, much_more_thrust = 1.1;
 constexpr int most_unwatched_steps = 20;
 constexpr double doubtful_start = 0.2;  // imbalance
@@ -107,6 +107,7 @@ double largest_pair_strain(const Tissue<Dim>& tissue, const FreeCells& free, con
   return std::sqrt(strain2);
 }
 
+/// Distance of the two cells of a pair that are nearest to each other.
 template <int Dim>
 double closest_pair_mm(const Tissue<Dim>& tissue) {
   double closest2 = std::numeric_limits<double>::infinity();

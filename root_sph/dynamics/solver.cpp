@@ -307,8 +307,8 @@ void Solver<Dim>::quasi_static_step() {
         throw UnphysicalError(fmt::format(
             "the tissue finds no balance at t = {:.5g} h, in steps down to {:.2g} h: after {} iterations the force on "
             "cell {} is {:.3g} of the pressure on its face (position {:.4g} mm, distance from the tip {:.4g} mm). "
-            "Usual "
-            "causes: nothing holds the root against a load; a slender root buckles (more cells across, or another "
+            "Usual causes: nothing holds the root against a load; a slender root buckles (more cells across, or "
+            "another "
             "numerics.step_h, may find the bent balance)",
             tissue_.time_h, window_h_, balance_.iterations, tissue_.cells.cell_id[i], balance_.worst_imbalance,
             fmt::join(x.data(), x.data() + Dim, ", "), tissue_.cells.distance_to_tip[i]));

@@ -47,8 +47,7 @@ template <int Dim>
 void CellStiffness<Dim>::find(std::size_t i, std::span<const typename Stencils<Dim>::Node> nodes) {
   const auto& cells = tissue_.cells;
   const Material<Dim>& material = tissue_.material;
-  nodes_ = nodes.size();
-  const auto columns = static_cast<Eigen::Index>(nodes_);
+  const auto columns = static_cast<Eigen::Index>(nodes.size());
   weights_.resize(Eigen::NoChange, columns);
   weights_.col(0).setZero();
   for (Eigen::Index node = 1; node < columns; ++node) {

@@ -62,7 +62,6 @@ class CellStiffness {
   /// For one cell and its nodes.
   void find(std::size_t cell, std::span<const typename Stencils<Dim>::Node> nodes);
 
-  std::size_t nodes() const { return nodes_; }
   /// W, N^(1/2) mm^(-1/2): row v Dim + c is entry v of the strain under displacements along axis c, a column for each
   /// node. (Voigt Dim) x nodes.
   const auto& strain_root() const { return strain_root_; }
@@ -76,7 +75,6 @@ class CellStiffness {
   const Tissue<Dim>& tissue_;
   const PairTerms<Dim>& terms_;
   double dt_h_;
-  std::size_t nodes_ = 0;
   NodeRows<voigt_size<Dim> * Dim> strain_root_;
   NodeRows<Dim> weights_, resisted_, arm_;
   Eigen::VectorXd star_;

@@ -12,7 +12,7 @@ NumericsSection preset(Accuracy accuracy);
 /// The step of a root that grows.
 struct StepRule {
   // Without inertia.
-  double growth_per_step = 0.0;         ///< largest axial strain; no cell passes its division threshold by more
+  double growth_per_step = 0.0;         ///< largest axial strain; no cell divides earlier by more
   double contact_cells_per_step = 0.0;  ///< that the tip moves where something can be in its way
   // With inertia.
   double tip_cells_per_step = 0.0;  ///< inertia's share of the stress is of the order of its square

@@ -113,8 +113,7 @@ DivisionEffect<Dim>::DivisionEffect(Solver<Dim>& solver, const DivisionSection& 
 
 /// Length now of a cell that reaches its threshold at the window's end. Cells can divide only at its start. Daughters
 /// grow as their mother would: when all divide that would have to within the window, every cell is at its end, where
-/// outputs are, as if each had divided in its time. (Those that have passed it already: on average half a window's
-/// growth late.)
+/// outputs are, as if each had divided in its time.
 template <int Dim>
 double DivisionEffect<Dim>::due_above_mm(const Tissue<Dim>& tissue, std::size_t cell) const {
   const double s_mm = tissue.cells.distance_to_tip[cell];

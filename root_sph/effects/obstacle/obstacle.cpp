@@ -212,7 +212,7 @@ ObstacleEffect<Dim>::ObstacleEffect(Solver<Dim>& solver, ObstacleParameters<Dim>
   solver.hooks().contact_stiffness.emplace_back(
       name, [this](Tissue<Dim>& t, std::vector<Mat<Dim>>& k) { add_stiffness(t, k); });
   solver.hooks().forces.emplace_back(name, [this](Tissue<Dim>& t, SlipAdvance advance) { add_forces(t, advance); });
-  if (parameters_.friction > 0.0) {
+  if (sliding_ && parameters_.friction > 0.0) {
     solver.hooks().friction.emplace_back(name, [this](Tissue<Dim>& t, bool& matters) { adapt_friction(t, matters); });
   }
 }
