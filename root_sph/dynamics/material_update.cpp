@@ -24,11 +24,10 @@ void update_material(Tissue<Dim>& tissue, double dt_h) {
     const Mat<Dim>& gradient = tissue.velocity_gradient[i];
     const Mat<Dim>& before = tissue.deformation[i];
     const Mat<Dim> after = before + dt_h * gradient;
-    const Mat<Dim> middle = 0.5 * (before + after);
-    const Mat<Dim> l = dt_h * gradient * middle.inverse();
-    const Mat<Dim> strain_matrix = 0.5 * (l + l.transpose());
-    const Mat<Dim> frame = cayley_rotation<Dim>(0.5 * (l - l.transpose())) * cells.frame[i];
-    const Voigt<Dim> strain = to_strain_voigt<Dim>(frame.transpose() * strain_matrix * frame);
+    const Mat<Dim> increment = dt_h * gradient * before.inverse();
+    const Mat<Dim> frame = step_rotation<Dim>(increment) * cells.frame[i];
+    const Voigt<Dim> strain =
+        to_strain_voigt<Dim>(cells.frame[i].transpose() * step_strain<Dim>(increment) * cells.frame[i]);
     const double volume = cells.volume[i] * (after.determinant() / before.determinant());
     const Stiffness<Dim>& k = Varying ? (*material.stiffness)[i] : material.uniform;
     const double lambda = Growing ? (*material.softening)[i] : 0.0;
@@ -69,6 +68,18 @@ Mat<3> cayley_rotation<3>(const Mat<3>& spin_times_dt) {
 }
 
 template <int Dim>
+Mat<Dim> step_rotation(const Mat<Dim>& increment) {
+  const Mat<Dim> l = 2.0 * increment * (2.0 * Mat<Dim>::Identity() + increment).inverse();
+  return cayley_rotation<Dim>(0.5 * (l - l.transpose()));
+}
+
+template <int Dim>
+Mat<Dim> step_strain(const Mat<Dim>& increment) {
+  const Mat<Dim> twice = increment + increment.transpose() + increment.transpose() * increment;  // F^T F - 1
+  return twice * (2.0 * Mat<Dim>::Identity() + twice).inverse();
+}
+
+template <int Dim>
 MaterialLoop<Dim> choose_material_loop(const Material<Dim>& material, MaterialStep step) {
   return visit_law<Dim>(material.law, [&]<class Law>(Law) {
     return choose(material.stiffness != nullptr, [&](auto varying) {
@@ -92,6 +103,10 @@ void update_nominal_forces(Tissue<Dim>& tissue) {
   }
 }
 
+template Mat<2> step_rotation<2>(const Mat<2>&);
+template Mat<3> step_rotation<3>(const Mat<3>&);
+template Mat<2> step_strain<2>(const Mat<2>&);
+template Mat<3> step_strain<3>(const Mat<3>&);
 template MaterialLoop<2> choose_material_loop<2>(const Material<2>&, MaterialStep);
 template MaterialLoop<3> choose_material_loop<3>(const Material<3>&, MaterialStep);
 template void update_nominal_forces<2>(Tissue<2>&);

@@ -27,7 +27,8 @@ constexpr double restless_move = 1e-2;  // that cells still want to make, over t
 constexpr double least_thrust = 1e-4, much_more_thrust = 1.1;
 constexpr int most_unwatched_steps = 20;
 constexpr double doubtful_start = 0.2;  // imbalance
-constexpr int most_escapes = 3, most_held = 25;
+constexpr int most_escapes = 3, most_falls = 200, most_newton_iterations = 60;
+constexpr double newton_accuracy = 0.1;
 // Multiplications of a band's factor, where layers could serve: what costs no more than they do, and what is worth
 // while where they fail.
 constexpr double little_work = 2e8, most_work = 2e11;
@@ -199,12 +200,12 @@ class Search {
     closest_pair_mm_ = closest_pair_mm<Dim>(tissue_);
   }
 
-  /// A balance that a small push would end is left for the one that the root falls into, and one that is not found for
-  /// want of stiffness is looked for along the mode that has little.
+  /// A balance that a small push would end is left for the one that the root falls into, and one that is not found is
+  /// looked for downhill.
   Balance run() {
     settle(choose_start());
     ++stability_.steps;
-    for (int k = 0; std::isfinite(balance_.imbalance) && may_buckle(); ++k) {
+    for (int k = 0; std::isfinite(balance_.imbalance) && (may_buckle() || (!balance_.found && problem_.downhill)); ++k) {
       if ((!built_ || is_old(balance_.iterations)) && !build()) break;
       stability_.thrust = thrust();
       stability_.steps = 0;
@@ -212,8 +213,9 @@ class Search {
       stability_.stiffness = mode.stiffness;
       balance_.stable = mode.stiffness > least_stiffness;
       const bool settled = balance_.found && !restless_;
-      if (k == most_escapes || (settled ? balance_.stable : mode.stiffness > ample_stiffness)) break;
-      follow(mode);
+      const bool soft = mode.stiffness <= (settled ? least_stiffness : ample_stiffness);
+      if (k == most_escapes || !(soft || (!settled && problem_.downhill))) break;
+      fall(mode);
       settle();
     }
     if (largest_pair_strain<Dim>(tissue_, free_, x_) > short_strain) method_.forget();
@@ -237,15 +239,11 @@ class Search {
     put(at);
     problem_.evaluate(displacement_);
     for (Eigen::Index p = 0; p < places_; ++p) r_.segment<Dim>(p * Dim) = tissue_.force[free_.cell[p]];
-    if (!held_) return;
-    pull_ = held_->v.dot(r_) / held_->v.dot(held_->load);
-    r_ -= pull_ * held_->load;
   }
 
   /// z = M^-1 r; nothing along a mode that is held.
   void precondition() {
     method_.preconditioner->apply(r_, z_);
-    if (held_) z_ -= held_->load.dot(z_) / held_->v.dot(held_->load) * held_->v;
   }
 
   void judge() {
@@ -408,8 +406,8 @@ class Search {
     return sum;
   }
 
-  /// Whether the root is pressed, and its softest mode is to be looked at: with a new matrix, where no balance was
-  /// found, where it was soft, where the thrust has grown, and now and then, for the root gets longer.
+  /// Whether the root is pressed, and its softest mode is to be looked at: with a new matrix, where cells want to move on
+  /// or it was soft, where the thrust has grown, and now and then, for the root gets longer.
   bool may_buckle() {
     const auto& cells = tissue_.cells;
     double section = 0.0;
@@ -418,7 +416,7 @@ class Search {
     }
     const double now = thrust();
     if (now <= least_thrust * stress_scale<Dim>(tissue_) * section) return false;
-    return fresh_ || !balance_.found || stability_.stiffness < ample_stiffness ||
+    return fresh_ || !balance_.found || restless_ || stability_.stiffness < ample_stiffness ||
            now > much_more_thrust * stability_.thrust || stability_.steps >= most_unwatched_steps;
   }
 
@@ -430,15 +428,9 @@ class Search {
       mode.load.template segment<Dim>(p * Dim) = faces_[p] * across<Dim>(tissue_.cells.frame[free_.cell[p]].col(0));
     }
     method_.preconditioner->apply(mode.load, mode.v);
-    const Eigen::VectorXd here = r_;
-    const auto resisted = [&](double move) -> Eigen::VectorXd {  // K v
-      const double push = move / largest_move<Dim>(mode.v, sizes_);
-      evaluate(x_ + push * mode.v);
-      return (here - r_) / push;
-    };
     const auto stiffness_over = [&](const Eigen::VectorXd& force) { return mode.v.dot(force) / mode.v.dot(mode.load); };
     for (int k = 0;; ++k) {
-      const Eigen::VectorXd force = resisted(small_move);
+      const Eigen::VectorXd force = resisted(mode.v, small_move);
       mode.stiffness = stiffness_over(force);
       if (mode.stiffness > ample_stiffness || k == 2) break;
       method_.preconditioner->apply(force, z_);
@@ -448,40 +440,91 @@ class Search {
     // a contact that opens or shuts is no mode: what has no stiffness has none to either side, and for larger pushes
     for (const double move : {-small_move, 10.0 * small_move, -10.0 * small_move}) {
       if (mode.stiffness > least_stiffness) break;
-      mode.stiffness = stiffness_over(resisted(move));
+      mode.stiffness = stiffness_over(resisted(mode.v, move));
     }
-    r_ = here;
     return mode;
   }
 
-  /// Along the mode, its amplitude held and all else in balance, until its force is none: steps that double, and then
-  /// between the last two (regula falsi). Where the force points; from a balance to the side that the step came from.
-  void follow(const Mode& mode) {
-    held_ = &mode;
-    const double move_of_one = largest_move<Dim>(mode.v, sizes_);
-    evaluate(x_);
-    Eigen::VectorXd near = x_, far;
-    double pull_near = pull_, pull_far = 0.0;
-    const double side = (balance_.found && !restless_ ? -mode.load.dot(x_) : pull_) < 0.0 ? -1.0 : 1.0;
-    double way = side * first_move / move_of_one;
-    for (int k = 0; k < most_held; ++k) {
-      x_ = far.size() == 0 ? Eigen::VectorXd(near + way * mode.v)
-                           : Eigen::VectorXd(near + pull_near / (pull_near - pull_far) * (far - near));
-      built_ = false;
-      iterate();
-      if (!balance_.found || std::abs(pull_) * move_of_one <= problem_.tolerance) break;
-      if (side * pull_ < 0.0) {
-        if (far.size() > 0) pull_near *= 0.5;  // the end that stays counts less (Illinois)
-        far = x_;
-        pull_far = pull_;
-      } else {
-        if (far.size() > 0) pull_far *= 0.5;
-        near = x_;
-        pull_near = pull_;
-        way *= 2.0;
-      }
+  /// K v, from what a small displacement along v does to the forces at x.
+  Eigen::VectorXd resisted(const Eigen::VectorXd& v, double move) {
+    const Eigen::VectorXd here = r_;
+    const double push = move / largest_move<Dim>(v, sizes_);
+    evaluate(x_ + push * v);
+    const Eigen::VectorXd force = (here - r_) / push;
+    r_ = here;
+    return force;
+  }
+
+  /// A step of Newton's method.
+  struct NewtonStep {
+    Eigen::VectorXd step, load, left;  ///< and M step; r - K step
+    bool limited = false;              ///< it is as long as allowed
+  };
+
+  /// Conjugate gradients on K step = r, preconditioned with M, until the step is as long as allowed in the norm of M. A
+  /// direction without stiffness is followed that far (Steihaug, SIAM J. Numer. Anal. 20, 626, 1983).
+  NewtonStep newton_step(double longest) {
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(x_.size());
+    NewtonStep newton{.step = none, .load = none, .left = r_};
+    Eigen::VectorXd z, way, way_load = r_;  // M way
+    method_.preconditioner->apply(r_, z);
+    way = z;
+    double rz = r_.dot(z);
+    const double enough = newton_accuracy * newton_accuracy * rz;
+    for (int k = 0; k < most_newton_iterations && rz > enough; ++k) {
+      const Eigen::VectorXd force = resisted(way, small_move);
+      const double curvature = way.dot(force), ww = way.dot(way_load), sw = way.dot(newton.load),
+                   room = longest * longest - newton.step.dot(newton.load);
+      double share = rz / curvature;
+      newton.limited = curvature <= 0.0 || share * (2.0 * sw + share * ww) >= room;
+      if (newton.limited) share = (-sw + std::sqrt(sw * sw + ww * room)) / ww;
+      newton.step += share * way;
+      newton.load += share * way_load;
+      newton.left -= share * force;
+      if (newton.limited) break;
+      method_.preconditioner->apply(newton.left, z);
+      const double before = std::exchange(rz, newton.left.dot(z));
+      way = z + rz / before * way;
+      way_load = newton.left + rz / before * way_load;
     }
-    held_ = nullptr;
+    return newton;
+  }
+
+  /// Downhill to a balance that is stable, from one that is not or where none was found: Newton's steps, as long as what
+  /// they gain is what they promise. Forces are all but the gradient of an energy, so a step gains the mean of the forces
+  /// at its ends times its way.
+  void fall(const Mode& mode) {
+    const Eigen::VectorXd push = first_move / largest_move<Dim>(mode.v, sizes_) * mode.v;
+    double trusted = first_move / largest_move<Dim>(mode.v, sizes_) * std::sqrt(mode.v.dot(mode.load));
+    if (balance_.found && !restless_) x_ += mode.load.dot(x_) < 0.0 ? Eigen::VectorXd(-push) : push;
+    evaluate(x_);
+    bool moved = true;
+    for (int k = 0; k < most_falls; ++k, ++balance_.iterations) {
+      if (moved && !build()) return;
+      const Eigen::VectorXd from = x_, force = r_;
+      const NewtonStep newton = newton_step(trusted);
+      // A straight step stretches what it turns: M mends that, and leaves how far the step goes.
+      evaluate(from + newton.step);
+      const Eigen::VectorXd stretched = r_ - newton.left;
+      method_.preconditioner->apply(stretched, z_);
+      const Eigen::VectorXd step =
+          newton.step + z_ - newton.step.dot(stretched) / newton.step.dot(newton.load) * newton.step;
+      const double promised = 0.5 * (force + newton.left).dot(newton.step);
+      double gained = -promised;
+      if (largest_pair_strain<Dim>(tissue_, free_, step) <= most_strain) {
+        evaluate(from + step);
+        gained = 0.5 * (force + r_).dot(step);
+      }
+      moved = gained > 0.1 * promised;
+      x_ = moved ? Eigen::VectorXd(from + step) : from;
+      if (!moved) r_ = force;
+      if (!(gained >= 0.25 * promised)) {
+        trusted *= 0.25;
+      } else if (gained > 0.75 * promised && newton.limited) {
+        trusted *= 2.0;
+      }
+      if (moved && !newton.limited && largest_move<Dim>(step, sizes_) <= problem_.tolerance) return;
+    }
   }
 
   const typename QuasiStatic<Dim>::Problem& problem_;
@@ -496,9 +539,7 @@ class Search {
   int rebuilds_ = 0;
   double closest_pair_mm_;
   bool built_ = false, fresh_ = false;  ///< there is a matrix; it is of this search
-  const Mode* held_ = nullptr;
   bool restless_ = false;  ///< forces balance, and cells want to move on
-  double pull_ = 0.0;      ///< amplitude that the held mode's force would add
   Balance balance_;
 };
 

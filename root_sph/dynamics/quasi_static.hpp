@@ -43,6 +43,7 @@ class QuasiStatic {
     ContactStiffness contact;
     /// What the forces are bounded by (friction) follows those of a balance; true: they are others now.
     std::function<bool()> adapt = [] { return false; };
+    bool downhill = false;  ///< a balance that iterations do not find is looked for downhill, which takes long
   };
 
   /// \param displacement first guess in, solution out; zero on held cells

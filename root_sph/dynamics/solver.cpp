@@ -230,7 +230,7 @@ void Solver<Dim>::end_window() {
 /// The displacement of the window at which all forces balance; the cells end there. False: there is none that can be
 /// found, and the cells are where they were.
 template <int Dim>
-bool Solver<Dim>::find_balance() {
+bool Solver<Dim>::find_balance(bool downhill) {
   auto& cells = tissue_.cells;
   const double dt = window_h_;
   const std::vector<Vec<Dim>> start(cells.position.values().begin(),
@@ -267,7 +267,8 @@ bool Solver<Dim>::find_balance() {
     return matters;
   };
   clock_.measure("balance", [&] {
-    balance_ = quasi_static_.solve({tissue_, terms_, dt, options_.force_tolerance, evaluate, contact, adapt_friction},
+    balance_ = quasi_static_.solve({tissue_, terms_, dt, options_.force_tolerance, evaluate, contact, adapt_friction,
+                                    downhill},
                                    displacement);
   });
   effort_.balance_iterations += balance_.iterations;
@@ -285,7 +286,7 @@ bool Solver<Dim>::find_balance() {
 /// A step without inertia, in parts where its balance cannot be found in one: halves, quarters, ... Each is a window.
 template <int Dim>
 void Solver<Dim>::quasi_static_step() {
-  constexpr int most_halvings = 10;
+  constexpr int most_halvings = 10, most_easy_halvings = 2;
   constexpr std::int64_t whole = std::int64_t{1} << most_halvings;
   const double step_h = tissue_.step_h, start_h = tissue_.time_h;
   std::int64_t done = 0;
@@ -299,7 +300,7 @@ void Solver<Dim>::quasi_static_step() {
     choose();
     begin_window();
     Hooks<Dim>::run(hooks_.step_loads, clock_, tissue_);
-    while (!find_balance()) {
+    while (!find_balance(level >= most_easy_halvings)) {
       if (++level > most_halvings) {
         tissue_.step_h = step_h;
         const std::size_t i = balance_.worst_cell;

@@ -86,7 +86,7 @@ class Solver {
   void predictor_corrector_step();
   void choose_inertia();
   void quasi_static_step();
-  bool find_balance();
+  bool find_balance(bool downhill);
   void end_window();
   void check_physical() const;
 

@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "root_sph/dynamics/material_update.hpp"
+
 namespace rootsoil {
 namespace {
 
@@ -63,8 +65,9 @@ void CellStiffness<Dim>::find(std::size_t i, std::span<const typename Stencils<D
   const double factor = std::sqrt(cells.volume[i] * deformation.determinant() / (1.0 + growth));
   const VoigtMat<Dim> elastic = elastic_tangent<Dim>(material.stiffness_of(i));
   const VoigtMat<Dim> root = factor * VoigtMat<Dim>(elastic.llt().matrixU());
-  multiply<voigt_size<Dim> * Dim, Dim>(strain_operator<Dim>(root, cells.frame[i]) * deformation.inverse().transpose(),
-                                       weights_, strain_root_);
+  const Mat<Dim> frame = step_rotation<Dim>(deformation - Mat<Dim>::Identity()) * cells.frame[i];
+  multiply<voigt_size<Dim> * Dim, Dim>(strain_operator<Dim>(root, frame) * deformation.inverse().transpose(), weights_,
+                                       strain_root_);
   if (!terms_.non_affine) return;
 
   // P = sum_j s_j z_j z_j^T, z_j = (1 at j) - (1 at i) - (g_k . r_j at k)
