@@ -76,7 +76,8 @@ Mat<Dim> step_rotation(const Mat<Dim>& increment) {
 template <int Dim>
 Mat<Dim> step_strain(const Mat<Dim>& increment) {
   const Mat<Dim> twice = increment + increment.transpose() + increment.transpose() * increment;  // F^T F - 1
-  return twice * (2.0 * Mat<Dim>::Identity() + twice).inverse();
+  const Mat<Dim> tanh = twice * (2.0 * Mat<Dim>::Identity() + twice).inverse();                  // of ln U
+  return tanh + tanh * tanh * tanh / 3.0;
 }
 
 template <int Dim>

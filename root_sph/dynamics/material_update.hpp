@@ -36,9 +36,10 @@ Mat<Dim> cayley_rotation(const Mat<Dim>& spin_times_dt);
 template <int Dim>
 Mat<Dim> step_rotation(const Mat<Dim>& increment);
 
-/// Strain of a step with F = I + increment = R U, in the axes of its start: ln U = ln(F^T F)/2, to third order in it
-/// (F^T F - I)(F^T F + I)^-1, whatever R. Taken at mid-step and in the axes of the end it is turned by half of R: a bent
-/// balance that a step of 0.2 rad finds was wrong by 10 % of its strain as shear.
+/// Strain of a step with F = I + increment = R U, in the axes of its start: ln U, whatever R, from its hyperbolic
+/// tangent (F^T F - I)(F^T F + I)^-1 and to fifth order in it. The strain at mid-step, in the axes of the end, is
+/// turned by half of R (a bent balance found in a step that turns cells by 0.2 rad took a tenth of its strain for
+/// shear).
 template <int Dim>
 Mat<Dim> step_strain(const Mat<Dim>& increment);
 

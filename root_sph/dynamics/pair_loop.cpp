@@ -43,14 +43,10 @@ void add_forces(Tissue<Dim>& tissue, PairTerms<Dim>& terms, SlipAdvance advance)
             const Vec<Dim> r = start[j] - start[i];
             const Vec<Dim> v = du - 0.5 * ((gradient_i + gradient[j]) * r);
             const Vec<Dim> e = slip[k];
-            Vec<Dim> used = e + advance.used_h * v, kept = e + advance.kept_h * v;
-            if constexpr (Creeping) {  // implicit in the creep
-              used *= retention[k];
-              if (advance.kept_h > 0.0) kept *= retention[k];
-            }
-            resisted += control_stiffness * used;
+            const double creep = Creeping ? retention[k] : 1.0;  // implicit
+            resisted += control_stiffness * creep * (e + advance.used_h * v);
             if constexpr (Damped) resisted += control_damping * both * v;
-            slip[k] = kept;
+            if (advance.kept_h > 0.0) slip[k] = creep * (e + advance.kept_h * v);
           }
           if constexpr (Viscous) resisted += viscosity * both * du;
           f += weight[k] * resisted;

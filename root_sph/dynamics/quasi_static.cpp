@@ -205,16 +205,17 @@ class Search {
   Balance run() {
     settle(choose_start());
     ++stability_.steps;
-    for (int k = 0; std::isfinite(balance_.imbalance) && (may_buckle() || (!balance_.found && problem_.downhill)); ++k) {
+    for (int k = 0; std::isfinite(balance_.imbalance) && (may_buckle() || (!balance_.found && problem_.downhill));
+         ++k) {
       if ((!built_ || is_old(balance_.iterations)) && !build()) break;
       stability_.thrust = thrust();
       stability_.steps = 0;
       const Mode mode = softest_mode();
       stability_.stiffness = mode.stiffness;
       balance_.stable = mode.stiffness > least_stiffness;
-      const bool settled = balance_.found && !restless_;
-      const bool soft = mode.stiffness <= (settled ? least_stiffness : ample_stiffness);
-      if (k == most_escapes || !(soft || (!settled && problem_.downhill))) break;
+      const bool leave =
+          balance_.found ? restless_ || !balance_.stable : problem_.downhill || mode.stiffness <= ample_stiffness;
+      if (k == most_escapes || !leave) break;
       fall(mode);
       settle();
     }
@@ -242,9 +243,7 @@ class Search {
   }
 
   /// z = M^-1 r; nothing along a mode that is held.
-  void precondition() {
-    method_.preconditioner->apply(r_, z_);
-  }
+  void precondition() { method_.preconditioner->apply(r_, z_); }
 
   void judge() {
     double square = 0.0;
@@ -406,8 +405,8 @@ class Search {
     return sum;
   }
 
-  /// Whether the root is pressed, and its softest mode is to be looked at: with a new matrix, where cells want to move on
-  /// or it was soft, where the thrust has grown, and now and then, for the root gets longer.
+  /// Whether the root is pressed, and its softest mode is to be looked at: with a new matrix, where cells want to move
+  /// on or it was soft, where the thrust has grown, and now and then, for the root gets longer.
   bool may_buckle() {
     const auto& cells = tissue_.cells;
     double section = 0.0;
@@ -490,9 +489,9 @@ class Search {
     return newton;
   }
 
-  /// Downhill to a balance that is stable, from one that is not or where none was found: Newton's steps, as long as what
-  /// they gain is what they promise. Forces are all but the gradient of an energy, so a step gains the mean of the forces
-  /// at its ends times its way.
+  /// Downhill to a balance that is stable, from one that is not or where none was found: Newton's steps, as long as
+  /// what they gain is what they promise. Forces are all but the gradient of an energy, so a step gains the mean of the
+  /// forces at its ends times its way.
   void fall(const Mode& mode) {
     const Eigen::VectorXd push = first_move / largest_move<Dim>(mode.v, sizes_) * mode.v;
     double trusted = first_move / largest_move<Dim>(mode.v, sizes_) * std::sqrt(mode.v.dot(mode.load));
@@ -503,6 +502,7 @@ class Search {
       if (moved && !build()) return;
       const Eigen::VectorXd from = x_, force = r_;
       const NewtonStep newton = newton_step(trusted);
+      if (newton.step.isZero(0.0)) return;  // nothing pulls
       // A straight step stretches what it turns: M mends that, and leaves how far the step goes.
       evaluate(from + newton.step);
       const Eigen::VectorXd stretched = r_ - newton.left;
@@ -539,7 +539,7 @@ class Search {
   int rebuilds_ = 0;
   double closest_pair_mm_;
   bool built_ = false, fresh_ = false;  ///< there is a matrix; it is of this search
-  bool restless_ = false;  ///< forces balance, and cells want to move on
+  bool restless_ = false;               ///< forces balance, and cells want to move on
   Balance balance_;
 };
 

@@ -267,9 +267,8 @@ bool Solver<Dim>::find_balance(bool downhill) {
     return matters;
   };
   clock_.measure("balance", [&] {
-    balance_ = quasi_static_.solve({tissue_, terms_, dt, options_.force_tolerance, evaluate, contact, adapt_friction,
-                                    downhill},
-                                   displacement);
+    balance_ = quasi_static_.solve(
+        {tissue_, terms_, dt, options_.force_tolerance, evaluate, contact, adapt_friction, downhill}, displacement);
   });
   effort_.balance_iterations += balance_.iterations;
   if (!balance_.found) {

@@ -215,14 +215,13 @@ TYPED_TEST(StepStiffness, ABalanceThatCannotBeLeftForAStableOneIsTold) {
   constexpr int dim = TypeParam::value;
   Block<dim> block(0.05);
   std::vector<Vec<dim>> displacement;
-  const auto slippery = [&] {
+  const auto loose = [&] {  // nothing but the thrust on what is held
     auto& cells = block.tissue.cells;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const Vec<dim> axis = cells.frame[i].col(0);
-      block.tissue.force[i] = cells.clamped[i] ? Vec<dim>(-axis) : Vec<dim>(axis.dot(block.tissue.force[i]) * axis);
+      block.tissue.force[i] = cells.clamped[i] ? Vec<dim>(-cells.frame[i].col(0)) : Vec<dim>(Vec<dim>::Zero());
     }
   };
-  const Balance balance = balance_of<dim>(block, displacement, slippery);
+  const Balance balance = balance_of<dim>(block, displacement, loose);
   EXPECT_TRUE(balance.found);
   EXPECT_FALSE(balance.stable);
 }
