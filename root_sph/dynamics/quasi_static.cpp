@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <optional>
 #include <utility>
+
+#include "root_sph/dynamics/mixing.hpp"
 
 namespace rootsoil {
 namespace {
@@ -17,7 +17,6 @@ namespace {
 constexpr int most_iterations = 60, most_halvings = 6, most_rebuilds = 8;
 constexpr int most_adaptations = 10;   // of friction to the balance
 constexpr int most_after_balance = 8;  // iterations after the first within the force's tolerance
-constexpr int mixed_iterations = 20;
 constexpr double most_strain = 0.2;    // of a pair's distance in one iteration
 constexpr double short_strain = 5e-3;  // of a pair's distance in a step after which the matrix is kept
 // Stability: stiffness of the softest mode over the tissue's own; displacements over a cell's size; thrust over p times
@@ -45,50 +44,6 @@ double stress_scale(const Tissue<Dim>& tissue) {
   const double rms = cells.size() > 0 ? std::sqrt(square / static_cast<double>(cells.size())) : 0.0;
   return std::max({std::abs(tissue.pressure_MPa), rms, 1e-9 * tissue.material.E_axial_MPa});
 }
-
-/// Anderson's mixing: of the iterations so far, the combination whose residual is smallest in the norm of M^-1. M is
-/// symmetric: differences of residuals appear in products with M^-1 only, and need not be kept.
-class Mixing {
- public:
-  void forget() {
-    steps_.clear();
-    x_.resize(0);
-  }
-  /// \param x, r, z unknowns, residual, M^-1 r of the latest iteration; on return z is the step to take from x
-  void improve(const Eigen::VectorXd& x, const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    if (x_.size() == x.size()) remember(r - r_, {x - x_ + z - z_, z - z_});
-    x_ = x;
-    r_ = r;
-    z_ = z;
-    const auto m = static_cast<Eigen::Index>(steps_.size());
-    if (m == 0) return;
-    Eigen::VectorXd against(m);
-    for (Eigen::Index a = 0; a < m; ++a) against[a] = steps_[a].z.dot(r);
-    const Eigen::VectorXd share = gram_.topLeftCorner(m, m).completeOrthogonalDecomposition().solve(against);
-    for (Eigen::Index a = 0; a < m; ++a) z -= share[a] * steps_[a].after;
-  }
-
- private:
-  struct Step {
-    Eigen::VectorXd after, z;  // differences of two iterations, of x + z and of z = M^-1 r
-  };
-
-  /// And its products with the others: dr . M^-1 dr.
-  void remember(const Eigen::VectorXd& dr, Step step) {
-    constexpr Eigen::Index most = mixed_iterations;
-    if (std::ssize(steps_) == most) {
-      steps_.pop_front();
-      gram_.topLeftCorner(most - 1, most - 1) = gram_.bottomRightCorner(most - 1, most - 1).eval();
-    }
-    steps_.push_back(std::move(step));
-    const Eigen::Index last = std::ssize(steps_) - 1;
-    for (Eigen::Index a = 0; a <= last; ++a) gram_(a, last) = gram_(last, a) = dr.dot(steps_[a].z);
-  }
-
-  std::deque<Step> steps_;
-  Eigen::MatrixXd gram_ = Eigen::MatrixXd::Zero(mixed_iterations, mixed_iterations);
-  Eigen::VectorXd x_, r_, z_;  ///< of the latest iteration; empty: there was none
-};
 
 /// By how much a step changes the distance vector of a pair over its length, the most of all.
 template <int Dim>
