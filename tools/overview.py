@@ -26,7 +26,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from rootsoil_tools import draw, measure, soil
+from rootsoil_tools import draw, measure, published, soil
 from rootsoil_tools.runs import Frame, Run, RunError, read_summary
 from rootsoil_tools.theory import ClosedForm
 
@@ -46,6 +46,7 @@ LONG_TICKS = 3.0  # more for those of a small deflection
 RIGHT_AXIS_WIDTH = 11.0  # of tick labels and label of an axis on the right
 TIMES = 6
 DEFLECTION_SEEN = 0.1  # of a cell's length: less looks like none
+DATA_HALF_WIDTH = 0.013  # mm: half of what lies between two measured points
 DISTANCE = "distance from the tip (mm)"
 
 
@@ -212,14 +213,16 @@ def draw_growth(run: Run, model: ClosedForm, panels: list) -> list[str]:
             panels[1].plot(s[renewed], 1e3 * model.at("cell_length", s[renewed]), **draw.THEORY_LINE)
             steady_in.append("C")
     if "arabidopsis" in run.name.lower():
-        distance, measured, source = measure.cell_length_data()
-        shown = distance <= end
-        dots = {"color": draw.DATA, "markersize": 2.6, "markeredgewidth": 0, "label": source}
-        panels[1].plot(distance[shown], measured[shown], "o", **dots)
-        r2 = measure.cell_length_r2(run)
-        if np.isfinite(r2):
-            panels[1].set_title(f"$R^2$ = {r2:.3f} (first 0.7 mm)", loc="right")
-            said.append(f"cell length, first 0.7 mm: R^2 = {r2:.4f}")
+        dots = {"color": draw.DATA, "markersize": 2.6, "markeredgewidth": 0, "label": published.SOURCE}
+        for panel, quantity, unit in ((panels[0], "strain_rate", 100.0), (panels[1], "cell_length", 1.0)):
+            at_mm, measured = published.arabidopsis(quantity)
+            panel.plot(at_mm, measured / unit, "o", **dots)
+            ours = {"strain_rate": "axial_strain_rate", "cell_length": "cell_length"}[quantity]
+            simulated = measure.near_points(run, run.window(measure.WINDOW_H), ours, at_mm, DATA_HALF_WIDTH)
+            r2 = published.fit(measured, unit * np.nanmean(simulated, axis=0)).r2
+            if np.isfinite(r2):
+                panel.set_title(f"$R^2$ = {r2:.3f}", loc="right")
+                said.append(f"{quantity.replace('_', ' ')}, {published.SOURCE}: R^2 = {r2:.4f}")
 
     draw.draw_profile(panels[2], profiles["radius"])
     start = min(int(np.searchsorted(edges, 0.25 * zone)), len(edges) - 2)

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "root_sph/core/errors.hpp"
+#include "root_sph/effects/division/division.hpp"
 #include "root_sph/effects/table.hpp"
 #include "root_sph/io/cell_file.hpp"
 #include "root_sph/kernels/wendland.hpp"
@@ -49,10 +50,12 @@ std::size_t add_cell(Tissue<Dim>& tissue, const Vec<Dim>& position, double volum
 
 /// Q of a cell of this size, volume^(1/Dim), as long and as wide as its place in the lattice. Where the lattice is not
 /// stretched this is 4/size^2 to the last bit.
+/// \param relative_length of the place, in layers
 template <int Dim>
-Mat<Dim> lattice_cell_shape(double size_mm, const Lattice& lattice, const Vec<Dim>& axis) {
-  const double along = std::pow(lattice.mean_stretch / lattice.stretch_along, 2);
-  const double across = std::pow(lattice.mean_stretch / lattice.stretch_across, 2);
+Mat<Dim> lattice_cell_shape(double size_mm, double relative_length, const Lattice& lattice, const Vec<Dim>& axis) {
+  const double mean = lattice.mean_stretch * std::pow(relative_length, 1.0 / Dim);
+  const double along = std::pow(mean / (lattice.stretch_along * relative_length), 2);
+  const double across = std::pow(mean / lattice.stretch_across, 2);
   return 4.0 / (size_mm * size_mm) * (across * Mat<Dim>::Identity() + (along - across) * axis * axis.transpose());
 }
 
@@ -65,6 +68,24 @@ Mat<Dim> rotation(double angle) {
   r(0, 1) = -r(1, 0);
   return r;
 }
+
+/// A row of cells that divide at different times, along the root: where they lie and how long they are, in layers of
+/// the lattice. Between two divisions cells are spread evenly over the logarithm of their length, from half of the
+/// longest on.
+struct Row {
+  std::vector<double> middle, length;
+
+  Row(int cells, Noise& noise) {
+    for (int k = 0; k < cells; ++k) length.push_back(std::exp2(0.5 * noise()));
+    const double unit = static_cast<double>(cells) / std::accumulate(length.begin(), length.end(), 0.0);
+    double end = 0.0;
+    for (double& l : length) {
+      l *= unit;
+      middle.push_back(end + 0.5 * l);
+      end += l;
+    }
+  }
+};
 
 template <int Dim>
 InitialReport fill_capsule(const Scene& scene, Tissue<Dim>& tissue) {
@@ -79,12 +100,19 @@ InitialReport fill_capsule(const Scene& scene, Tissue<Dim>& tissue) {
   const double oblique = std::tan(root.base_obliquity_deg * std::numbers::pi / 180.0);
   const auto layers_before = static_cast<int>(std::ceil((clamp_mm + std::abs(oblique) * radius) / spacing[0] - 1e-9));
   Noise noise(scene.scene.seed);
+  const auto* const division = scene.find<DivisionSection>();
+  std::vector<Row> rows;
+  for (int row = 0; division && division->asynchronous && row < std::pow(lattice.across, Dim - 1); ++row) {
+    rows.emplace_back(lattice.layers, noise);
+  }
 
   for (int i = -layers_before; i < lattice.layers; ++i) {
     for (int j = 0; j < lattice.across; ++j) {
       for (int k = 0; k < (Dim == 3 ? lattice.across : 1); ++k) {
+        const Row* const row = rows.empty() || i < 0 ? nullptr : &rows[Dim == 3 ? j * lattice.across + k : j];
+        const double relative_length = row ? row->length[i] : 1.0;
         Vec<Dim> x;
-        x[0] = (i + 0.5) * spacing[0];
+        x[0] = (row ? row->middle[i] : i + 0.5) * spacing[0];
         x[1] = (j - 0.5 * (lattice.across - 1)) * spacing[1];
         if constexpr (Dim == 3) x[2] = (k - 0.5 * (lattice.across - 1)) * spacing[2];
         const double lateral = x.template tail<Dim - 1>().norm();
@@ -100,8 +128,9 @@ InitialReport fill_capsule(const Scene& scene, Tissue<Dim>& tissue) {
         if (!clamped && root.jitter > 0.0) {
           for (int a = 0; a < Dim; ++a) x[a] += root.jitter * spacing[a] * noise();
         }
-        const double volume = cell_volume * (root.size_variation > 0.0 ? 1.0 + root.size_variation * noise() : 1.0);
-        const double cell_length = std::pow(volume, 1.0 / Dim);
+        const double volume =
+            relative_length * cell_volume * (root.size_variation > 0.0 ? 1.0 + root.size_variation * noise() : 1.0);
+        const double cell_size = std::pow(volume, 1.0 / Dim);
         Mat<Dim> frame = Mat<Dim>::Identity();
         if (root.curvature_per_mm != 0.0) {
           // the straight axis becomes an arc that starts along x
@@ -111,8 +140,9 @@ InitialReport fill_capsule(const Scene& scene, Tissue<Dim>& tissue) {
           x[0] = (1.0 / root.curvature_per_mm - y) * std::sin(angle);
           x[1] = 1.0 / root.curvature_per_mm - (1.0 / root.curvature_per_mm - y) * std::cos(angle);
         }
-        const std::size_t cell = add_cell<Dim>(
-            tissue, x, volume, lattice_cell_shape<Dim>(cell_length, lattice, frame.col(0)), frame, clamped);
+        const std::size_t cell =
+            add_cell<Dim>(tissue, x, volume, lattice_cell_shape<Dim>(cell_size, relative_length, lattice, frame.col(0)),
+                          frame, clamped);
         tissue.cells.distance_to_tip[cell] = length - arc;
       }
     }

@@ -5,21 +5,22 @@
 
 namespace rootsoil {
 
-double value_at(const Rows& table, double time_h) {
-  if (time_h <= table.front()[0]) return table.front()[1];
+double value_at(const Rows& table, double x) {
+  if (x <= table.front()[0]) return table.front()[1];
   for (std::size_t k = 1; k < table.size(); ++k) {
-    const auto& [t0, v0] = table[k - 1];
-    const auto& [t1, v1] = table[k];
-    if (time_h < t1) return v0 + (v1 - v0) * (time_h - t0) / (t1 - t0);
+    const auto& [x0, v0] = table[k - 1];
+    const auto& [x1, v1] = table[k];
+    if (x < x1) return v0 + (v1 - v0) * (x - x0) / (x1 - x0);
   }
   return table.back()[1];
 }
 
-void check_times(const Rows& table, const std::string& key, const Origins& origins) {
+void check_increasing(const Rows& table, const std::string& key, const std::string& name, const Origins& origins) {
   for (std::size_t i = 1; i < table.size(); ++i) {
     if (table[i - 1][0] < table[i][0]) continue;
-    origins.fail(key, "the times do not increase", fmt::format("{} after {}", table[i][0], table[i - 1][0]),
-                 "increasing times", "sort the rows, and give each time once");
+    origins.fail(key, fmt::format("the {} do not increase", name),
+                 fmt::format("{} after {}", table[i][0], table[i - 1][0]), "increasing " + name,
+                 "sort the rows, and give each of them once");
   }
 }
 

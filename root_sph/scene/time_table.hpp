@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Values that a scene gives over time: [[h, value], ...], linear in between, constant before the first and after the
-// last.
+// Values that a scene gives over time, or along the root: [[h, value], ...], linear in between, constant before the
+// first and after the last.
 #pragma once
 
 #include <string>
@@ -9,10 +9,11 @@
 
 namespace rootsoil {
 
-/// \param table rows (time_h, value), times increasing; not empty
-double value_at(const Rows& table, double time_h);
+/// \param table rows (x, value), x increasing; not empty
+double value_at(const Rows& table, double x);
 
-/// InputError where the times of a key's rows do not increase.
-void check_times(const Rows& table, const std::string& key, const Origins& origins);
+/// InputError where the first numbers of a key's rows do not increase.
+/// \param name of those numbers: times, distances
+void check_increasing(const Rows& table, const std::string& key, const std::string& name, const Origins& origins);
 
 }  // namespace rootsoil

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "root_sph/effects/anisotropy/anisotropy.hpp"
 #include "root_sph/effects/division/division.hpp"
@@ -72,16 +75,55 @@ TEST(Softening, FallsToZeroAcrossTheMatureCutOff) {
 }
 
 TEST(DivisionThreshold, HasTheValuesOfEquation6) {
-  const auto l = [](double s) { return division_threshold_mm({0.01, 1.0, 45.0, 0.12, {}}, s); };
+  const auto l = [](double s) {
+    return division_threshold_mm({.l0_mm = 0.01, .s_d_per_mm2 = 45.0, .x_d_mm = 0.12}, s);
+  };
   EXPECT_NEAR(l(0.12), 0.01, 1e-16);
   EXPECT_NEAR(l(0.62), 0.01 * (1.0 + 45.0 * 0.25), 1e-15);
   EXPECT_NEAR(l(0.0), 0.01 * (1.0 + 45.0 * 0.0144), 1e-15);
 }
 
 TEST(DivisionThreshold, StaysConstantBeyondADistance) {
-  const auto l = [](double s) { return division_threshold_mm({0.01, 1.0, 45.0, 0.12, 0.5}, s); };
+  const auto l = [](double s) {
+    return division_threshold_mm({.l0_mm = 0.01, .s_d_per_mm2 = 45.0, .x_d_mm = 0.12, .constant_beyond_mm = 0.5}, s);
+  };
   EXPECT_EQ(l(0.5), l(3.0));
   EXPECT_LT(l(0.49), l(0.5));
+}
+
+TEST(DivisionThreshold, EndsAtADistance) {
+  const DivisionSection ending{.l0_mm = 0.01, .ends_at_mm = 0.5};
+  EXPECT_EQ(division_threshold_mm(ending, 0.5), 0.01);
+  EXPECT_EQ(division_threshold_mm(ending, 0.5001), std::numeric_limits<double>::infinity());
+}
+
+TEST(DivisionFactor, IsOneUnlessAskedForAndACellsOwn) {
+  EXPECT_EQ(division_factor({}, 1, 17), 1.0);
+  const DivisionSection scattered{.scatter = 0.1};
+  EXPECT_EQ(division_factor(scattered, 1, 17), division_factor(scattered, 1, 17));
+  EXPECT_NE(division_factor(scattered, 1, 17), division_factor(scattered, 1, 18));
+  EXPECT_NE(division_factor(scattered, 1, 17), division_factor(scattered, 2, 17));
+}
+
+/// Mean, standard deviation and correlation of a cell with the next, of the logarithm, against four standard errors.
+TEST(DivisionFactor, IsSpreadAsStated) {
+  constexpr int cells = 40000;
+  const auto moments = [](auto&& factor) {
+    double sum = 0.0, square = 0.0, with_next = 0.0;
+    for (int id = 0; id < cells; ++id) {
+      const double x = std::log(factor(id));
+      sum += x;
+      square += x * x;
+      with_next += x * std::log(factor(id + 1));
+    }
+    const double mean = sum / cells, variance = square / cells - mean * mean;
+    return std::array{mean, std::sqrt(variance), (with_next / cells - mean * mean) / variance};
+  };
+  const double error = 4.0 / std::sqrt(double{cells});
+  const auto scattered = moments([](std::int64_t id) { return division_factor({.scatter = 0.2}, 7, id); });
+  EXPECT_NEAR(scattered[0], 0.0, 0.2 * error);
+  EXPECT_NEAR(scattered[1], 0.2, 0.2 * error);
+  EXPECT_NEAR(scattered[2], 0.0, error);
 }
 
 TEST(Response, InterpolatesBetweenItsTwoSets) {

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -180,24 +179,41 @@ def tip_angle(frame: Frame, dimension: int) -> float:
     return float(np.arctan2(np.hypot(axis[1], axis[2]), axis[0]))
 
 
-def cell_length_data() -> tuple[np.ndarray, np.ndarray, str]:
-    """Measured cortical cell length of Arabidopsis: distance from the tip (mm), length (um), and whose it is."""
-    path = Path(__file__).parent.parent / "data" / "arabidopsis_cell_length.csv"
-    distance_um, length_um = np.loadtxt(path, delimiter=",", skiprows=3, unpack=True)
-    return distance_um / 1e3, length_um, "Beemster & Baskin 1998"
+def near_points(run: Run, frames: list[int], quantity: str, at_mm: np.ndarray, half_mm: float) -> np.ndarray:
+    """Mean of axial_strain_rate (1/h) or cell_length (um) of the cells within `half_mm` of each point, a row a frame."""
+    table = np.full((len(frames), len(at_mm)), np.nan)
+    for row, index in enumerate(frames):
+        frame = run.frame(index)
+        lengths = 1e3 * frame.axial_lengths(run.dimension)
+        values = lengths if quantity == "cell_length" else frame[quantity]
+        near = np.abs(frame["distance_to_tip"][None, :] - at_mm[:, None]) <= half_mm
+        count = near.sum(axis=1)
+        table[row, count > 0] = (near @ values)[count > 0] / count[count > 0]
+    return table
 
 
-def determination(measured: np.ndarray, simulated: np.ndarray) -> float:
-    """R^2 = 1 - SSE/SST."""
-    return float(1.0 - np.sum((measured - simulated) ** 2) / np.sum((measured - measured.mean()) ** 2))
+def division_rates(run: Run, frames: list[int], at_mm: np.ndarray, half_mm: float) -> np.ndarray:
+    """Divisions for each cell and hour (1/h) within `half_mm` of each point, a row for each two frames in succession.
 
-
-def cell_length_r2(run: Run) -> float:
-    """R^2 of the simulated to the measured cell length, both in bins of 25 um over the first 0.7 mm."""
-    distance, measured, _ = cell_length_data()
-    profile = growth_profiles(run, edges_of(0.7, 0.025))["cell_length"]
-    filled = np.isfinite(profile.mean)
-    if not filled.any():
-        return float("nan")
-    simulated = np.interp(profile.s_mm, profile.s_mm[filled], profile.mean[filled])
-    return determination(np.interp(profile.s_mm, distance, measured), simulated)
+    A division is a mother of the earlier frame of whom the later one has daughters; it lies half-way between her place
+    and theirs. Cells that divided twice between the frames count once.
+    """
+    table = np.full((len(frames) - 1, len(at_mm)), np.nan)
+    for row, (first, second) in enumerate(zip(frames, frames[1:])):
+        before, after = run.frame(first), run.frame(second)
+        place = dict(zip(before["cell_id"], before["distance_to_tip"]))
+        daughters: dict[int, list[float]] = {}
+        for mother, s in zip(after["parent_id"], after["distance_to_tip"]):
+            if mother in place:
+                daughters.setdefault(mother, []).append(s)
+        survived = np.isin(after["cell_id"], before["cell_id"])
+        newborn = set(after["parent_id"][~survived])
+        at = np.array([(place[m] + np.mean(s)) / 2.0 for m, s in daughters.items() if m in newborn])
+        hours = run.times_h[second] - run.times_h[first]
+        divisions = (np.abs(at[None, :] - at_mm[:, None]) <= half_mm).sum(axis=1) if at.size else np.zeros(len(at_mm))
+        cells = np.mean(
+            [(np.abs(f["distance_to_tip"][None, :] - at_mm[:, None]) <= half_mm).sum(axis=1) for f in (before, after)],
+            axis=0,
+        )
+        table[row, cells > 0] = divisions[cells > 0] / (cells[cells > 0] * hours)
+    return table

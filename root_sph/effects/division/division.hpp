@@ -8,12 +8,21 @@ namespace rootsoil {
 
 struct DivisionSection {
   double l0_mm = 0.0, c_d = 1.0, s_d_per_mm2 = 0.0, x_d_mm = 0.0;
-  std::optional<double> constant_beyond_mm;
+  std::optional<double> constant_beyond_mm{}, ends_at_mm{};
+  Rows table{};  ///< distance from the tip, threshold, mm; empty: Eq. 6
+  double scatter = 0.0;
+  bool asynchronous = false;
 };
 
-/// Division threshold of the longest axis, l(s) = l0 (c_d + s_d (s - x_d)^2), mm; constant beyond a distance.
-/// Eq. 6, third.
+/// Division threshold of the longest axis, mm: that of the table, or l(s) = l0 (c_d + s_d (s - x_d)^2), constant beyond
+/// a distance (Eq. 6, third). Infinite beyond where division ends.
 double division_threshold_mm(const DivisionSection& division, double s_mm);
+
+/// What a cell's threshold is times that of its place. Each cell has its own, at random: with a standard deviation of
+/// `scatter` in its logarithm, drawn anew for each daughter, since the sizes at which a plant cell and its mother
+/// divide are hardly correlated (Willis et al., PNAS 113, E8238, 2016). A pure function of the numbers of the cell:
+/// nothing is kept, and a resumed run draws the same. \param seed of the scene
+double division_factor(const DivisionSection& division, std::int64_t seed, std::int64_t cell_id);
 
 /// Moves the cells of a file along the root, by a little, so that gaps and overlaps between them even out. Spacing and
 /// cell length drift apart by a per cent where the growth rate varies, and a gap doubles relative to its cells in every
@@ -30,19 +39,17 @@ std::string runaway_division(std::size_t cells, double shorter);
 template <int Dim>
 class DivisionEffect final : public Effect<Dim> {
  public:
-  DivisionEffect(Solver<Dim>& solver, const DivisionSection& division);
+  DivisionEffect(Solver<Dim>& solver, const DivisionSection& division, std::int64_t seed);
 
  private:
   void divide(Tissue<Dim>& tissue) const;
   void refuse_runaway(const Tissue<Dim>& tissue, const std::vector<char>& divides) const;
-  double threshold_mm(const Tissue<Dim>& tissue, std::size_t cell) const {
-    return division_threshold_mm(division_, tissue.cells.distance_to_tip[cell]);
-  }
-
+  double threshold_mm(const Tissue<Dim>& tissue, std::size_t cell, double s_mm) const;
   double due_above_mm(const Tissue<Dim>& tissue, std::size_t cell) const;
 
   const Solver<Dim>& solver_;
   DivisionSection division_;
+  std::int64_t seed_;
   double mean_volume_;  ///< of a cell at the start
 };
 

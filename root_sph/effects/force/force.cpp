@@ -17,7 +17,7 @@ namespace {
 void complete_force(Scene& scene) {
   ForceSection& force = *scene.find<ForceSection>();
   check_one_of("force", "axial_N", "vector_N", scene.origins);
-  check_times(force.table, "force.table", scene.origins);
+  check_increasing(force.table, "force.table", "times", scene.origins);
   const auto [from, to] = force.distance_to_tip_mm;
   if (scene.origins.has("force.distance_to_tip_mm")) {
     if (from < to) return;

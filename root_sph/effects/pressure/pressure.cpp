@@ -14,7 +14,7 @@ namespace {
 void complete_pressure(Scene& scene) {
   check_one_of("pressure", "differential_MPa", "table", scene.origins);
   const Rows& table = scene.find<PressureSection>()->table;
-  check_times(table, "pressure.table", scene.origins);
+  check_increasing(table, "pressure.table", "times", scene.origins);
   const auto [low, high] =
       std::minmax_element(table.begin(), table.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
   scene.facts.pressure_MPa = {(*low)[1], (*high)[1]};
