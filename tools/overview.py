@@ -219,8 +219,9 @@ def draw_growth(run: Run, model: ClosedForm, panels: list) -> list[str]:
             panel.plot(at_mm, measured / unit, "o", **dots)
             ours = {"strain_rate": "axial_strain_rate", "cell_length": "cell_length"}[quantity]
             simulated = measure.near_points(run, run.window(measure.WINDOW_H), ours, at_mm, DATA_HALF_WIDTH)
-            r2 = published.fit(measured, unit * np.nanmean(simulated, axis=0)).r2
-            if np.isfinite(r2):
+            there = np.isfinite(simulated).any(axis=0)
+            if np.count_nonzero(there) > 1:
+                r2 = published.fit(measured[there], unit * np.nanmean(simulated[:, there], axis=0)).r2
                 panel.set_title(f"$R^2$ = {r2:.3f}", loc="right")
                 said.append(f"{quantity.replace('_', ' ')}, {published.SOURCE}: R^2 = {r2:.4f}")
 

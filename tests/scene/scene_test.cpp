@@ -70,6 +70,9 @@ c_d = 1.5
 s_d_per_mm2 = 45
 x_d_mm = 0.12
 constant_beyond_mm = 0.5
+ends_at_mm = 0.6
+scatter = 0.1
+asynchronous = true
 
 [response]
 extrapolate = false

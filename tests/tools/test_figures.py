@@ -17,7 +17,7 @@ from matplotlib import pyplot as plt
 from overview import draw_contact, percent
 from synthetic import make_growing_run, make_strained_run
 
-from rootsoil_tools import measure
+from rootsoil_tools import measure, published
 from rootsoil_tools.runs import Frame, Run, RunError
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -259,13 +259,38 @@ def test_bins_and_determination():
     assert profile.s_mm == pytest.approx([0.05, 0.15, 0.25])
     assert profile.mean[:2] == pytest.approx([2.0, 5.0]) and np.isnan(profile.mean[2])
     assert [measure.round_width(w) for w in (0.03, 0.025, 0.19, 7.0)] == pytest.approx([0.025, 0.025, 0.1, 5.0])
-    assert measure.determination(np.array([1.0, 2.0, 3.0]), np.array([1.0, 2.0, 4.0])) == pytest.approx(0.5)
 
 
-def test_measured_cell_lengths_are_there():
-    distance, length, source = measure.cell_length_data()
-    assert (distance[0], length[0], distance[-1], length[-1]) == pytest.approx((0.0125, 7.0, 0.8875, 95.0))
-    assert len(distance) == 36 and "Beemster" in source
+def test_agreement_with_a_published_curve():
+    found = published.fit(np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 5.0]))
+    assert (found.r2, found.rmse, found.relative_error) == pytest.approx((1.0 - 3.0 / 14.0, 3.0**-0.5, 1.0 / 12.0))
+
+
+def test_published_curves_are_there():
+    for quantity, points, first in (
+        ("cell_length", 23, (0.0121, 9.2938)),
+        ("strain_rate", 26, (0.015, 3.9537)),
+        ("division_rate", 20, (0.0291, 0.042965)),
+    ):
+        at_mm, values = published.arabidopsis(quantity)
+        assert len(at_mm) == points and (at_mm[0], values[0]) == pytest.approx(first)
+
+
+class TwoFrames:
+    """Six cells 0.1 mm apart; within 2 h the second divides, and one that was not there before as well."""
+
+    times_h, dimension = np.array([0.0, 2.0]), 2
+
+    def frame(self, index: int) -> dict:
+        ids = [[0, 1, 2, 3, 4, 5], [0, 6, 7, 2, 3, 4, 5, 8]][index]
+        mothers = [[-1] * 6, [-1, 1, 1, -1, -1, -1, -1, 9]][index]
+        places = [[0.05, 0.15, 0.25, 0.35, 0.45, 0.55], [0.05, 0.15, 0.19, 0.27, 0.37, 0.47, 0.57, 0.6]][index]
+        return {"cell_id": np.array(ids), "parent_id": np.array(mothers), "distance_to_tip": np.array(places)}
+
+
+def test_division_rate_counts_mothers_between_frames():
+    rates = measure.division_rates(TwoFrames(), [0, 1], np.array([0.16, 0.46, 3.0]), 0.05)
+    assert rates[0, :2] == pytest.approx([1.0 / (1.5 * 2.0), 0.0]) and np.isnan(rates[0, 2])
 
 
 FAKE_PROGRAM = """#!/usr/bin/python3
