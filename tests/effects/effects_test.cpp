@@ -254,7 +254,7 @@ TYPED_TEST(Effects, DivisionThresholdFollowsTheDistanceFromTheTip) {
   constexpr int dim = TypeParam::value;
   this->fill_root();
   // 0.009 at the tip, 0.009 (1 + 100 s^2) further up: cells of 0.01 divide for s < 0.0333
-  DivisionEffect<dim> division(this->solver, {0.009, 1.0, 100.0, 0.0, {}});
+  DivisionEffect<dim> division(this->solver, {.l0_mm = 0.009, .s_d_per_mm2 = 100.0}, 1);
   const std::vector<double> s = this->tissue.cells.distance_to_tip.values();
   this->run(this->solver.hooks().division);
   for (std::size_t i = 0; i < s.size(); ++i) EXPECT_EQ(this->tissue.cells.generation[i], s[i] < 1.0 / 30.0 ? 1 : 0);
@@ -273,7 +273,7 @@ TYPED_TEST(Effects, DivisionEvensOutSpacingAlongTheRootOnly) {
   SolverOptions options;
   options.step_h = 1e-3;
   Solver<dim> running(options);
-  DivisionEffect<dim> division(running, {1.0, 1.0, 0.0, 0.0, {}});  // nothing is long enough to divide
+  DivisionEffect<dim> division(running, {.l0_mm = 1.0}, 1);  // nothing is long enough to divide
   std::array<int, dim> counts;
   counts.fill(4);
   counts[0] = 40;
@@ -311,7 +311,7 @@ TYPED_TEST(Effects, DivisionEvensOutSpacingOfFreeCellsOnly) {
   SolverOptions options;
   options.step_h = 1e-3;
   Solver<dim> running(options);
-  DivisionEffect<dim> division(running, {1.0, 1.0, 0.0, 0.0, {}});
+  DivisionEffect<dim> division(running, {.l0_mm = 1.0}, 1);
   std::array<int, dim> counts;
   counts.fill(4);
   counts[0] = 40;
