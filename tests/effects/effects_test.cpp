@@ -219,7 +219,7 @@ TYPED_TEST(Effects, DivisionCutsFreeCellsLongerThanTheThresholdOnce) {
   constexpr int dim = TypeParam::value;
   this->fill_root();
   auto& cells = this->tissue.cells;
-  DivisionEffect<dim> division(this->solver, {0.012, 1.0, 0.0, 0.0, {}});
+  DivisionEffect<dim> division(this->solver, {.l0_mm = 0.012}, 1);
   const auto lengthen = [&](std::size_t i, double length) {
     Vec<dim> lengths = Vec<dim>::Constant(0.01);
     lengths[dim - 1] = length;
