@@ -25,8 +25,9 @@ import numpy as np
 
 LLOYD_STEPS = 4
 POINTS_PER_CELL = 60
-LONG_SHARE = 0.03  # of the cells swallow those in front of and behind them, with --spread
-LONGEST_ROW = 7
+TRIED_SHARE = 0.05  # of the cells swallow, where they can, those in front of and behind them, with --spread
+LONGEST_ROW = 8.0
+ROW_WIDTH = 0.45  # a cell this near to the axis of a row, in spacings, belongs to it
 SPECK_SHARE = 0.05
 LARGEST_SPECK = 0.1  # of the volume of its cell
 SIZE_RATIO = 8.0  # wanted volume at the base over that at the tip; the cells' scatter makes it about ten
@@ -90,17 +91,15 @@ def sums(owner: np.ndarray, values: np.ndarray, cells: int) -> np.ndarray:
     return np.stack([np.bincount(owner, column, cells) for column in values.T], axis=1)
 
 
-def long_cells(rng: np.random.Generator, centres: np.ndarray, length: float) -> np.ndarray:
-    """For each cell the one that it becomes a part of: some swallow a row of cells along the axis."""
+def long_cells(rng: np.random.Generator, centres: np.ndarray, spacing: float) -> np.ndarray:
+    """For each cell the one that it becomes a part of: some swallow a straight row of cells along the axis."""
     becomes = np.arange(len(centres))
     free = np.ones(len(centres), dtype=bool)
-    for cell in rng.permutation(len(centres))[: int(LONG_SHARE * len(centres))]:
-        row = [cell]
-        while free[row].all() and len(row) < rng.integers(2, LONGEST_ROW + 1):
-            ahead = centres - centres[row[-1]]
-            ahead = np.abs(ahead[:, 0]) + 4.0 * np.hypot(ahead[:, 1], ahead[:, 2]) + 1e9 * (ahead[:, 0] <= 0.0)
-            row.append(int(np.argmin(ahead)))
-        if free[row].all() and centres[row[-1], 0] < length:
+    for cell in rng.permutation(len(centres))[: int(TRIED_SHARE * len(centres))]:
+        ahead = centres - centres[cell]
+        beside = np.hypot(ahead[:, 1], ahead[:, 2])
+        row = np.flatnonzero((beside < ROW_WIDTH * spacing) & (np.abs(ahead[:, 0]) < 0.5 * LONGEST_ROW * spacing))
+        if free[row].all():
             free[row] = False
             becomes[row] = cell
     return np.unique(becomes, return_inverse=True)[1]
@@ -147,7 +146,7 @@ def make_cells(cells: int, length: float, radius: float, seed: int, spread: floa
     points, weight = sample_capsule(rng, 4 * POINTS_PER_CELL * cells, length, radius)
     owner = nearest_centre(points, centres)
     if spread is not None:
-        becomes = long_cells(rng, centres, length)
+        becomes = long_cells(rng, centres, np.cbrt(np.pi * radius**2 * length / cells))
         owner, cells = becomes[owner], int(becomes.max()) + 1
     if np.bincount(owner, minlength=cells).min() < 10:
         raise ValueError("a cell came out too small to measure; use fewer cells or another seed")
