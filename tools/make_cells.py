@@ -27,6 +27,7 @@ LLOYD_STEPS = 4
 POINTS_PER_CELL = 60
 TRIED_SHARE = 0.05  # of the cells swallow, where they can, those in front of and behind them, with --spread
 LONGEST_ROW = 8.0
+WIDEST_GAP = 1.3  # between cells of a row, in spacings: no other cell lies in between
 ROW_WIDTH = 0.45  # a cell this near to the axis of a row, in spacings, belongs to it
 SPECK_SHARE = 0.05
 LARGEST_SPECK = 0.1  # of the volume of its cell
@@ -99,7 +100,8 @@ def long_cells(rng: np.random.Generator, centres: np.ndarray, spacing: float) ->
         ahead = centres - centres[cell]
         beside = np.hypot(ahead[:, 1], ahead[:, 2])
         row = np.flatnonzero((beside < ROW_WIDTH * spacing) & (np.abs(ahead[:, 0]) < 0.5 * LONGEST_ROW * spacing))
-        if free[row].all():
+        gaps = np.diff(np.sort(ahead[row, 0]))
+        if free[row].all() and np.all(gaps < WIDEST_GAP * spacing):
             free[row] = False
             becomes[row] = cell
     return np.unique(becomes, return_inverse=True)[1]

@@ -77,27 +77,25 @@ Layout layout_of(std::string_view text, const CellColumns& columns) {
   const auto given_or = [](const Titles& given, const Titles& otherwise) { return given.empty() ? otherwise : given; };
   const bool regionprops = holds_title(held, "centroid-0");
   Layout layout;
-  layout.label = layout.add({!columns.label.empty()                                              ? columns.label
+  layout.label = layout.add({!columns.label.empty()                                      ? columns.label
                              : holds_title(held, "label") && !holds_title(held, "Label") ? "label"
-                                                                                                 : "Label"});
-  layout.position =
-      layout.add(given_or(columns.position, regionprops ? Titles{"centroid-0", "centroid-1", "centroid-2"}
-                                                        : with_units(held, {"pos.X", "pos.Y", "pos.Z"})));
+                                                                                         : "Label"});
+  layout.position = layout.add(given_or(columns.position, regionprops ? Titles{"centroid-0", "centroid-1", "centroid-2"}
+                                                                      : with_units(held, {"pos.X", "pos.Y", "pos.Z"})));
   const bool axes_given = !columns.semi_axes.empty() || !columns.diameters.empty() || !columns.e1.empty();
   if (!columns.inertia.empty() || (!axes_given && holds_title(held, "inertia_tensor-0-0"))) {
     layout.shape = Shape::inertia;
-    layout.inertia = layout.add(given_or(
-        columns.inertia, {"inertia_tensor-0-0", "inertia_tensor-0-1", "inertia_tensor-0-2", "inertia_tensor-1-1",
-                          "inertia_tensor-1-2", "inertia_tensor-2-2"}));
+    layout.inertia =
+        layout.add(given_or(columns.inertia, {"inertia_tensor-0-0", "inertia_tensor-0-1", "inertia_tensor-0-2",
+                                              "inertia_tensor-1-1", "inertia_tensor-1-2", "inertia_tensor-2-2"}));
   } else if (!axes_given && !columns.volume.empty() && !holds_title(held, "e1.X")) {
     layout.shape = Shape::ball;
   } else {
     layout.e1 = layout.add(given_or(columns.e1, {"e1.X", "e1.Y", "e1.Z"}));
     layout.e2 = layout.add(given_or(columns.e2, {"e2.X", "e2.Y", "e2.Z"}));
     layout.diameters = !columns.diameters.empty();
-    layout.semi_axes = layout.add(layout.diameters
-                                      ? columns.diameters
-                                      : given_or(columns.semi_axes, with_units(held, {"r1", "r2", "r3"})));
+    layout.semi_axes = layout.add(layout.diameters ? columns.diameters
+                                                   : given_or(columns.semi_axes, with_units(held, {"r1", "r2", "r3"})));
   }
   if (!columns.volume.empty()) {
     layout.volume = layout.add({columns.volume});
@@ -111,8 +109,9 @@ CsvTable table_of(const Layout& layout) {
   return {.columns = {layout.titles.begin(), layout.titles.end()},
           .rows = "cells",
           .whole_remedy = "export the cells again",
-          .header_remedy = "export position, axes and radii of the cells as CSV, in micrometres, or say in "
-                           "[root.columns] what the columns are called",
+          .header_remedy =
+              "export position, axes and radii of the cells as CSV, in micrometres, or say in "
+              "[root.columns] what the columns are called",
           .row_remedy = "correct this row, or export the cells again"};
 }
 
@@ -168,8 +167,7 @@ class Reader {
     const double value = csv_.number(column);
     const double length_mm = factor * mm(column) * value;
     if (!(length_mm * um_per_mm >= lowest_um && length_mm * um_per_mm <= highest_um)) {
-      csv_.fail_at(column, "out of range", fmt::format("{}", value),
-                   fmt::format("{} to {} um", lowest_um, highest_um),
+      csv_.fail_at(column, "out of range", fmt::format("{}", value), fmt::format("{} to {} um", lowest_um, highest_um),
                    fmt::format("check that the column is in {}", plural(units_[column])));
     }
     return length_mm;
@@ -206,11 +204,11 @@ class Reader {
       cell.semi_axes_mm.setConstant(std::cbrt(volume_mm3() * 3.0 / (4.0 * std::numbers::pi)));
     }
     if (cell.semi_axes_mm[0] > most_slender * cell.semi_axes_mm[2]) {
-      csv_.fail_at(layout_.shape == Shape::axes ? layout_.semi_axes + 2 : layout_.inertia,
-                   "the cell is as thin as a thread or a leaf",
-                   fmt::format("r1 = {:.6g}, r3 = {:.6g}", cell.semi_axes_mm[0] * um_per_mm,
-                               cell.semi_axes_mm[2] * um_per_mm),
-                   fmt::format("r1 at most {} times r3", most_slender));
+      csv_.fail_at(
+          layout_.shape == Shape::axes ? layout_.semi_axes + 2 : layout_.inertia,
+          "the cell is as thin as a thread or a leaf",
+          fmt::format("r1 = {:.6g}, r3 = {:.6g}", cell.semi_axes_mm[0] * um_per_mm, cell.semi_axes_mm[2] * um_per_mm),
+          fmt::format("r1 at most {} times r3", most_slender));
     }
     cell.volume_mm3 = layout_.volume ? volume_mm3() : ellipsoid_volume_mm3(cell);
     return cell;
@@ -236,10 +234,10 @@ class Reader {
     }
     for (std::size_t i = 1; i < 3; ++i) {
       if (cell.semi_axes_mm[static_cast<int>(i)] > cell.semi_axes_mm[static_cast<int>(i) - 1]) {
-        csv_.fail_at(r1 + i, "the semi-axes are not in descending order",
-                     fmt::format("r1 = {}, r2 = {}, r3 = {}", csv_.number(r1), csv_.number(r1 + 1),
-                                 csv_.number(r1 + 2)),
-                     "r1 >= r2 >= r3");
+        csv_.fail_at(
+            r1 + i, "the semi-axes are not in descending order",
+            fmt::format("r1 = {}, r2 = {}, r3 = {}", csv_.number(r1), csv_.number(r1 + 1), csv_.number(r1 + 2)),
+            "r1 >= r2 >= r3");
       }
     }
   }
@@ -267,7 +265,8 @@ class Reader {
   double volume_mm3() const {
     const std::size_t column = *layout_.volume;
     const double volume = csv_.number(column) * std::pow(mm(column), 3);
-    const double smallest = std::pow(smallest_axis_um / um_per_mm, 3), largest = std::pow(largest_axis_um / um_per_mm, 3);
+    const double smallest = std::pow(smallest_axis_um / um_per_mm, 3),
+                 largest = std::pow(largest_axis_um / um_per_mm, 3);
     if (!(volume >= smallest && volume <= largest)) {
       csv_.fail_at(column, "out of range", fmt::format("{}", csv_.number(column)),
                    fmt::format("{:.3g} to {:.3g} mm^3", smallest, largest),

@@ -194,12 +194,13 @@ std::vector<std::string> csv_titles(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   const std::string_view header = text.substr(0, text.find_first_of("\r\n"));
   std::vector<std::string> titles;
-  for (const std::string_view title : split(header, separator_of(header))) titles.push_back(plain_title(title));
+  for (const std::string_view title : split(header, separator_of(header))) titles.emplace_back(title);
   return titles;
 }
 
 bool holds_title(const std::vector<std::string>& titles, std::string_view wanted) {
-  return std::find(titles.begin(), titles.end(), plain_title(wanted)) != titles.end();
+  return std::any_of(titles.begin(), titles.end(),
+                     [plain = plain_title(wanted)](const std::string& title) { return plain_title(title) == plain; });
 }
 
 std::string read_users_file(const std::filesystem::path& path, const std::string& key, const std::string& allowed) {

@@ -57,9 +57,9 @@ class CsvReader {
   mutable char decimal_sign_ = 0;  ///< of the first number that has one
 };
 
-/// The titles in the first line that is not empty, without spaces and with (um) for any micro sign.
+/// The titles in the first line that is not empty.
 std::vector<std::string> csv_titles(std::string_view text);
-/// Is this one among them?
+/// Is this one among them? Spaces and how the micro sign is written don't matter.
 bool holds_title(const std::vector<std::string>& titles, std::string_view wanted);
 
 /// The text of a file that the user names under `key`; InputError where there is none.

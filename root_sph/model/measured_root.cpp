@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 
@@ -100,8 +101,8 @@ Vec<3> towards_tip(std::span<const MeasuredCell> cells, const Vec<3>& axis, std:
   };
   const auto before = at_end(-1.0, end_share * (high - low)), behind = at_end(1.0, end_share * (high - low));
   const double sizes = median(before) / median(behind);
-  const double widths = std::accumulate(before.begin(), before.end(), 0.0) /
-                        std::accumulate(behind.begin(), behind.end(), 0.0);
+  const double widths =
+      std::accumulate(before.begin(), before.end(), 0.0) / std::accumulate(behind.begin(), behind.end(), 0.0);
   for (const auto& [ratio, words] : {std::pair(sizes, "the end with the smaller cells"),
                                      std::pair(widths, "the narrower end; cells are as large at both")}) {
     if (ratio > differ || ratio < 1.0 / differ) {
@@ -111,6 +112,24 @@ Vec<3> towards_tip(std::span<const MeasuredCell> cells, const Vec<3>& axis, std:
   }
   how = "the end of larger coordinates; the cells do not tell";
   return direction_of(nearest_axis(axis)).sum() > 0.0 ? axis : Vec<3>(-axis);
+}
+
+/// Cells that lie in one another, however different they are in size.
+void refuse_nested(const std::string& file, std::span<const MeasuredCell> cells) {
+  constexpr double nested =
+      0.2;  // the nearest in files of tools/make_cells.py --spread: 0.27, beside crooked long cells
+  const auto neighbours = contacts(cells);
+  const auto name = [&](std::size_t i) { return fmt::format("cell {} (line {})", cells[i].label, cells[i].line); };
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (const Touching& other : neighbours[i]) {
+      if (other.touch >= nested) continue;
+      throw InputError(
+          {file, std::max(cells[i].line, cells[other.cell].line), "root.cells_file",
+           fmt::format("cells overlap: {} and {}", name(i), name(other.cell)),
+           fmt::format("their centres are {:.3g} of the distance apart at which they would touch", other.touch),
+           fmt::format("at least {}", nested), "remove the cell that was segmented twice, or correct its semi-axes"});
+    }
+  }
 }
 
 /// Directions spread evenly over the sphere (Fibonacci's spiral), and those along the axes.
@@ -131,15 +150,22 @@ std::vector<Vec<3>> directions(int count) {
 /// Half the length along each coordinate axis of a cell.
 Vec<3> half_extent(const MeasuredCell& cell) { return (5.0 * covariance(cell).diagonal()).cwiseSqrt(); }
 
-/// Of the convex hull of these ellipsoids between two planes across x. Planes that touch the hull enclose it in many
-/// directions; along a ray from the middle the nearest of them ends it, and volume is the integral of r^3/3 over rays.
-double convex_hull_mm3(std::span<const MeasuredCell> cells, double from, double to) {
-  static const std::vector<Vec<3>> normals = directions(1000);
+/// Lowest and highest place of ellipsoids, times `reach`.
+std::pair<Vec<3>, Vec<3>> extent(std::span<const MeasuredCell> cells, double reach = 1.0) {
   Vec<3> lower = Vec<3>::Constant(1e300), upper = -lower;
   for (const MeasuredCell& cell : cells) {
-    lower = lower.cwiseMin(cell.position_mm - half_extent(cell));
-    upper = upper.cwiseMax(cell.position_mm + half_extent(cell));
+    lower = lower.cwiseMin(cell.position_mm - reach * half_extent(cell));
+    upper = upper.cwiseMax(cell.position_mm + reach * half_extent(cell));
   }
+  return {lower, upper};
+}
+
+/// Of the convex hull of these ellipsoids, times `reach`, between two planes across x. Planes that touch the hull
+/// enclose it in many directions; along a ray from the middle the nearest of them ends it, and volume is the integral
+/// of r^3/3 over rays.
+double convex_hull_mm3(std::span<const MeasuredCell> cells, double reach, double from, double to) {
+  static const std::vector<Vec<3>> normals = directions(1000);
+  auto [lower, upper] = extent(cells, reach);
   lower[0] = from;
   upper[0] = to;
   const Vec<3> middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);  // scaled by which it is as wide as long
@@ -147,7 +173,7 @@ double convex_hull_mm3(std::span<const MeasuredCell> cells, double from, double 
   std::vector<double> support(normals.size(), 0.0);
   for (const MeasuredCell& cell : cells) {
     const Vec<3> x = scale * (cell.position_mm - middle);
-    const Mat<3> moments = 5.0 * scale * covariance(cell) * scale;
+    const Mat<3> moments = 5.0 * reach * reach * scale * covariance(cell) * scale;
     for (std::size_t k = 0; k < normals.size(); ++k) {
       support[k] = std::max(support[k], normals[k].dot(x) + std::sqrt(normals[k].dot(moments * normals[k])));
     }
@@ -162,6 +188,34 @@ double convex_hull_mm3(std::span<const MeasuredCell> cells, double from, double 
     sum += r * r * r;
   }
   return 4.0 / 3.0 * std::numbers::pi * half.prod() * sum / static_cast<double>(normals.size());
+}
+
+/// Of the body that a skin around ellipsoids, times `reach`, encloses: convex hulls of pieces as long as they are wide.
+double skin_volume_mm3(std::span<const MeasuredCell> cells, double reach) {
+  const auto [lower, upper] = extent(cells, reach);
+  const Vec<3> lengths = upper - lower;
+  constexpr double most_pieces = 1e4;
+  const int pieces =
+      static_cast<int>(std::clamp(std::round(lengths[0] / lengths.tail<2>().maxCoeff()), 1.0, most_pieces));
+  const double length = lengths[0] / pieces;
+  std::vector<std::vector<MeasuredCell>> in_piece(static_cast<std::size_t>(pieces));
+  for (const MeasuredCell& cell : cells) {
+    const auto piece_at = [&, from = lower[0]](double x) {
+      return std::clamp(static_cast<int>((x - from) / length), 0, pieces - 1);
+    };
+    const double half = reach * half_extent(cell)[0];
+    const int last = piece_at(cell.position_mm[0] + half);
+    for (int p = piece_at(cell.position_mm[0] - half); p <= last; ++p) {
+      in_piece[static_cast<std::size_t>(p)].push_back(cell);
+    }
+  }
+  double volume = 0.0;
+  for (int p = 0; p < pieces; ++p) {
+    const auto& piece = in_piece[static_cast<std::size_t>(p)];
+    const double from = lower[0] + p * length;
+    if (!piece.empty()) volume += convex_hull_mm3(piece, reach, from, from + length);
+  }
+  return volume;
 }
 
 }  // namespace
@@ -230,8 +284,8 @@ Vec<3> principal_axis(std::span<const MeasuredCell> cells) {
 void turn_to_x(std::vector<MeasuredCell>& cells, TipAxis asked, const std::string& file, MeasuredRootReport& report) {
   Vec<3> axis = principal_axis(cells);
   const auto refuse = [&](std::string what, std::string given, std::string allowed, std::string remedy) {
-    throw InputError({file, 0, "root.tip_axis", std::move(what), std::move(given), std::move(allowed),
-                      std::move(remedy)});
+    throw InputError(
+        {file, 0, "root.tip_axis", std::move(what), std::move(given), std::move(allowed), std::move(remedy)});
   };
   if (asked == TipAxis::found) {
     if (axis.isZero()) {
@@ -262,9 +316,9 @@ void turn_to_x(std::vector<MeasuredCell>& cells, TipAxis asked, const std::strin
   report.tip_axis = name_of(asked);
   report.lean_deg = lean_deg;
   const Vec<3> towards = direction_of(asked);
-  const Mat<3> turn = (Eigen::Quaterniond::FromTwoVectors(towards, Vec<3>::UnitX()) *
-                       Eigen::Quaterniond::FromTwoVectors(axis, towards))
-                          .toRotationMatrix();
+  const Mat<3> turn =
+      (Eigen::Quaterniond::FromTwoVectors(towards, Vec<3>::UnitX()) * Eigen::Quaterniond::FromTwoVectors(axis, towards))
+          .toRotationMatrix();
   for (MeasuredCell& cell : cells) {
     cell.position_mm = turn * cell.position_mm;
     cell.axes = turn * cell.axes;
@@ -272,29 +326,14 @@ void turn_to_x(std::vector<MeasuredCell>& cells, TipAxis asked, const std::strin
 }
 
 double hull_volume_mm3(std::span<const MeasuredCell> cells) {
-  Vec<3> lower = Vec<3>::Constant(1e300), upper = -lower;
-  for (const MeasuredCell& cell : cells) {
-    lower = lower.cwiseMin(cell.position_mm - half_extent(cell));
-    upper = upper.cwiseMax(cell.position_mm + half_extent(cell));
-  }
-  const Vec<3> extent = upper - lower;
-  const int pieces = std::max(1, static_cast<int>(std::min(1e4, std::round(extent[0] / extent.tail<2>().maxCoeff()))));
-  std::vector<std::vector<MeasuredCell>> in_piece(static_cast<std::size_t>(pieces));
-  const double length = extent[0] / pieces;
-  for (const MeasuredCell& cell : cells) {
-    const auto piece_at = [&](double x) { return std::clamp(static_cast<int>((x - lower[0]) / length), 0, pieces - 1); };
-    const double half = half_extent(cell)[0];
-    const int last = piece_at(cell.position_mm[0] + half);
-    for (int p = piece_at(cell.position_mm[0] - half); p <= last; ++p) {
-      in_piece[static_cast<std::size_t>(p)].push_back(cell);
-    }
-  }
-  double volume = 0.0;
-  for (int p = 0; p < pieces; ++p) {
-    const double from = lower[0] + p * length;
-    if (!in_piece[static_cast<std::size_t>(p)].empty()) {
-      volume += convex_hull_mm3(in_piece[static_cast<std::size_t>(p)], from, from + length);
-    }
+  // An ellipsoid that touches the faces of a box fills pi/6 of it. Those of second moments are larger than this, and
+  // would stand out of the skin; how much tells the hull itself.
+  constexpr double touching_share = std::numbers::pi / 6.0;
+  const double ellipsoids = std::transform_reduce(cells.begin(), cells.end(), 0.0, std::plus<>(), ellipsoid_volume_mm3);
+  double volume = 0.0, reach = 1.0;
+  for (int pass = 0; pass < 3; ++pass) {  // then to a thousandth
+    volume = skin_volume_mm3(cells, reach);
+    reach = std::min(1.0, std::cbrt(touching_share * volume / ellipsoids));
   }
   return volume;
 }
@@ -307,15 +346,14 @@ MeasuredRoot read_measured_root(const Scene& scene) {
   report.cells_in_file = root.cells.size();
   refuse_piles(file, root.cells);
   report.merged = merge_specks(root.cells);
+  refuse_nested(file, root.cells);
   refuse_parts(file, root.cells);
   turn_to_x(root.cells, scene.root.tip_axis, file, report);
 
+  const auto [lower, upper] = extent(root.cells);
   std::vector<double> volumes;
-  Vec<3> lower = Vec<3>::Constant(1e300), upper = -lower;
   for (const MeasuredCell& cell : root.cells) {
     volumes.push_back(cell.volume_mm3);
-    lower = lower.cwiseMin(cell.position_mm - half_extent(cell));
-    upper = upper.cwiseMax(cell.position_mm + half_extent(cell));
     report.most_slender = std::max(report.most_slender, cell.semi_axes_mm[0] / cell.semi_axes_mm[2]);
   }
   report.extent_mm = upper - lower;
@@ -332,17 +370,17 @@ std::vector<std::string> describe(const MeasuredRootReport& report) {
   std::vector<std::string> lines;
   lines.push_back(fmt::format("{} cells in the file, {:.4g} mm long, {:.3g} and {:.3g} mm across", report.cells_in_file,
                               report.extent_mm[0], report.extent_mm[1], report.extent_mm[2]));
-  lines.push_back(fmt::format("tip towards {} ({}); axis ({:.4f}, {:.4f}, {:.4f}) in the file, turned by {:.1f} degrees{}",
-                              report.tip_axis, report.tip_found, report.tip_direction[0], report.tip_direction[1],
-                              report.tip_direction[2], report.lean_deg,
-                              report.lean_deg > reported_lean_deg ? ": the file leans" : ""));
-  lines.push_back(fmt::format("sizes (cube roots of volumes) {:.3g} to {:.3g} mm, median {:.3g}: volumes span {:.3g}-fold; "
-                              "r1/r3 up to {:.3g}",
-                              report.smallest_mm, report.largest_mm, report.median_mm,
-                              std::pow(report.largest_mm / report.smallest_mm, 3), report.most_slender));
+  lines.push_back(fmt::format(
+      "tip towards {} ({}); axis ({:.4f}, {:.4f}, {:.4f}) in the file, turned by {:.1f} degrees{}", report.tip_axis,
+      report.tip_found, report.tip_direction[0], report.tip_direction[1], report.tip_direction[2], report.lean_deg,
+      report.lean_deg > reported_lean_deg ? ": the file leans" : ""));
+  lines.push_back(
+      fmt::format("sizes (cube roots of volumes) {:.3g} to {:.3g} mm, median {:.3g}: volumes span {:.3g}-fold; "
+                  "r1/r3 up to {:.3g}",
+                  report.smallest_mm, report.largest_mm, report.median_mm,
+                  std::pow(report.largest_mm / report.smallest_mm, 3), report.most_slender));
   lines.push_back(fmt::format("cells fill {:.3g} of the hull, {:.4g} mm^3; volumes are multiplied by {:.4g}",
-                              report.cells_mm3 / report.hull_mm3, report.hull_mm3,
-                              report.hull_mm3 / report.cells_mm3));
+                              report.cells_mm3 / report.hull_mm3, report.hull_mm3, report.hull_mm3 / report.cells_mm3));
   constexpr std::size_t most_named = 5;
   std::string specks;
   for (std::size_t k = 0; k < std::min(most_named, report.merged.size()); ++k) {

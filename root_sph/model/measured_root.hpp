@@ -23,11 +23,11 @@ struct Merged {
 struct MeasuredRootReport {
   std::size_t cells_in_file = 0;
   std::vector<Merged> merged;
-  Vec<3> tip_direction = Vec<3>::UnitX();  ///< of the root's axis, in the file
-  std::string tip_axis;                    ///< asked for or found: "+x"
-  std::string tip_found;                   ///< how
-  double lean_deg = 0.0;                   ///< by which the root was turned onto it
-  Vec<3> extent_mm = Vec<3>::Zero();       ///< along the root and across
+  Vec<3> tip_direction = Vec<3>::UnitX();                       ///< of the root's axis, in the file
+  std::string tip_axis;                                         ///< asked for or found: "+x"
+  std::string tip_found;                                        ///< how
+  double lean_deg = 0.0;                                        ///< by which the root was turned onto it
+  Vec<3> extent_mm = Vec<3>::Zero();                            ///< along the root and across
   double smallest_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;  ///< sizes of cells, volume^(1/3)
   double most_slender = 1.0;                                    ///< r1/r3
   double cells_mm3 = 0.0, hull_mm3 = 0.0;                       ///< all cells together; the tissue

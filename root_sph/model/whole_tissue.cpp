@@ -95,7 +95,8 @@ void refuse_overlap(const std::string& file, double volume_scale) {
   if (volume_scale >= least) return;
   throw InputError({file, 0, "root.cells_file", "the cells overlap: together they are larger than the tissue",
                     fmt::format("volumes would have to be multiplied by {:.3g} to fill it once", volume_scale),
-                    fmt::format("at least {}", least), "are r1, r2 and r3 semi-axes, not diameters, and all in the unit of the positions?"});
+                    fmt::format("at least {}", least),
+                    "are r1, r2 and r3 semi-axes, not diameters, and all in the unit of the positions?"});
 }
 
 template <int Dim>
