@@ -315,10 +315,17 @@ void turn_to_x(std::vector<MeasuredCell>& cells, TipAxis asked, const std::strin
   report.tip_direction = axis;
   report.tip_axis = name_of(asked);
   report.lean_deg = lean_deg;
-  const Vec<3> towards = direction_of(asked);
-  const Mat<3> turn =
-      (Eigen::Quaterniond::FromTwoVectors(towards, Vec<3>::UnitX()) * Eigen::Quaterniond::FromTwoVectors(axis, towards))
-          .toRotationMatrix();
+  // Which way round does not matter to a root, but roundings depend on it: the cell furthest from the axis comes to +y,
+  // so that a file turned in any way gives the same run.
+  const Vec<3> middle = centroid(cells);
+  Vec<3> furthest = Vec<3>::Zero();
+  for (const MeasuredCell& cell : cells) {
+    const Vec<3> offset = cell.position_mm - middle, across = offset - offset.dot(axis) * axis;
+    if (across.squaredNorm() > furthest.squaredNorm()) furthest = across;
+  }
+  const Vec<3> y = furthest.isZero() ? axis.unitOrthogonal() : Vec<3>(furthest.normalized());
+  Mat<3> turn;
+  turn << axis.transpose(), y.transpose(), axis.cross(y).transpose();
   for (MeasuredCell& cell : cells) {
     cell.position_mm = turn * cell.position_mm;
     cell.axes = turn * cell.axes;

@@ -156,8 +156,8 @@ SectionSpec root_section() {
         "Cells from microscopy (a table with a row a cell), relative to this file.",
         "MorphoGraphX export, scikit-image regionprops_table").names_file(),
     key(&Ro::tip_axis, "tip_axis",
-        "Direction of the tip in the cell file, nearly: the root is turned onto its own axis. auto: the end with the "
-        "smaller cells.", "-").only_with("cells_file"),
+        "Direction of the tip in the cell file, nearly. auto: the end with the smaller cells. The root is turned: its own "
+        "axis onto +x, the cell furthest from it to +y.", "-").only_with("cells_file"),
     key(&Ro::length_mm, "length_mm", "mm", above(0).up_to(1e3, microns), "From the base to the tip.", "paper 4.4")
         .required().only_without("cells_file"),
     key(&Ro::radius_mm, "radius_mm", "mm", above(0).up_to(20, microns), "Radius (2D: half the width).", "paper 4.4")
