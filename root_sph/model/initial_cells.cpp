@@ -134,10 +134,13 @@ InitialReport fill_from_file(const Scene& scene, Tissue<3>& tissue) {
   const MeasuredRoot root = read_measured_root(scene);
   const double scale = root.report.hull_mm3 / root.report.cells_mm3;
   Vec<3> centre = Vec<3>::Zero();
+  // A clamp holds whatever it grips. Cells that reach into it, and could move, would grow against those around them.
+  constexpr double gripped = 0.8;  // of the half length: a cell that ends where the clamp does is not
+  const auto half_length = [](const MeasuredCell& cell) { return std::sqrt(5.0 * covariance(cell)(0, 0)); };
   double base = 1e300, tip = -1e300, size = 0.0;
   std::int64_t highest = -1;
   for (const MeasuredCell& cell : root.cells) {
-    base = std::min(base, cell.position_mm[0]);
+    base = std::min(base, cell.position_mm[0] - half_length(cell));
     tip = std::max(tip, cell.position_mm[0]);
     centre += cell.position_mm / static_cast<double>(root.cells.size());
     size += std::cbrt(scale * cell.volume_mm3) / static_cast<double>(root.cells.size());
@@ -149,7 +152,7 @@ InitialReport fill_from_file(const Scene& scene, Tissue<3>& tissue) {
   for (const MeasuredCell& cell : root.cells) {
     const Vec<3> x = cell.position_mm - origin;
     const std::size_t i = add_cell<3>(tissue, x, scale * cell.volume_mm3, shape_matrix(cell), Mat<3>::Identity(),
-                                      clamp_mm > 0.0 && x[0] < 0.0);
+                                      clamp_mm > 0.0 && x[0] < gripped * half_length(cell));
     tissue.cells.cell_id[i] = cell.label;
     tissue.cells.distance_to_tip[i] = tip - cell.position_mm[0];
   }

@@ -195,7 +195,7 @@ SectionSpec cell_columns_section() {
     titles_key(&Co::inertia, "inertia", "Inertia of unit mass, in place of axes: six titles, xx, xy, xz, yy, yz, zz.",
                "inertia_tensor-0-0, -0-1, -0-2, -1-1, -1-2, -2-2 if there"),
     key(&Co::volume, "volume", "-", any_text, "Volume; where it is all there is, cells are balls.", "-")
-        .defaults_to("area (regionprops_table) if there; else that of the ellipsoid"),
+        .defaults_to("area if there; else of the ellipsoid"),
   }).completed_by(complete_cell_columns);
 }
 
