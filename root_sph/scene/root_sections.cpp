@@ -94,15 +94,15 @@ void complete_cell_columns(Scene& scene) {
   check_size("e2", columns.e2, 3);
   check_size("semi_axes", columns.semi_axes, 3);
   check_size("diameters", columns.diameters, 3);
-  check_size("inertia", columns.inertia, 6);
+  check_size("inertia_tensor", columns.inertia, 6);
   const auto refuse_both = [&](const char* key, const Texts& titles, const char* other, const Texts& other_titles) {
     if (titles.empty() || other_titles.empty()) return;
     origins.fail(fmt::format("root.columns.{}", key), fmt::format("{} says the same", other), toml_text(titles), {},
                  "give one of the two");
   };
   refuse_both("diameters", columns.diameters, "semi_axes", columns.semi_axes);
-  refuse_both("inertia", columns.inertia, "semi_axes", columns.semi_axes);
-  refuse_both("inertia", columns.inertia, "diameters", columns.diameters);
+  refuse_both("inertia_tensor", columns.inertia, "semi_axes", columns.semi_axes);
+  refuse_both("inertia_tensor", columns.inertia, "diameters", columns.diameters);
 }
 
 /// Titles in a list, empty where the file's own names hold.
@@ -192,7 +192,7 @@ SectionSpec cell_columns_section() {
     titles_key(&Co::e2, "e2", "Unit vector of the middle axis: three titles.", "e2.X, e2.Y, e2.Z"),
     titles_key(&Co::semi_axes, "semi_axes", "Semi-axes in descending order: three titles.", "r1, r2, r3"),
     titles_key(&Co::diameters, "diameters", "Whole axes in descending order, in place of semi_axes.", "none"),
-    titles_key(&Co::inertia, "inertia", "Inertia of unit mass, in place of axes: six titles, xx, xy, xz, yy, yz, zz.",
+    titles_key(&Co::inertia, "inertia_tensor", "Inertia of unit mass, in place of axes: six titles, xx, xy, xz, yy, yz, zz.",
                "inertia_tensor-0-0, -0-1, -0-2, -1-1, -1-2, -2-2 if there"),
     key(&Co::volume, "volume", "-", any_text, "Volume; where it is all there is, cells are balls.", "-")
         .defaults_to("area if there; else of the ellipsoid"),

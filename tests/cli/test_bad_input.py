@@ -391,7 +391,7 @@ def test_what_was_found_in_a_cell_file(program: Program):
         "tip towards +x",
         "turned by 0.",
         "1 specks merged into the cells that they touch: 9999 (line 194) into 631",
-        "volumes are multiplied by 1.8",
+        "volumes are multiplied by 1.9",
     ):
         assert part in done.out, done.out
     found = json.loads(program("check", program.scene(MEASURED), "--json").out)["cell_file"]

@@ -350,7 +350,7 @@ TEST(Scene, EveryKeyIsWrittenUnlessItMeansNothing) {
                                           "root.columns.e2",
                                           "root.columns.semi_axes",
                                           "root.columns.diameters",
-                                          "root.columns.inertia",
+                                          "root.columns.inertia_tensor",
                                           "root.columns.volume",
                                           "pressure.differential_MPa",
                                           "force.vector_N",
