@@ -116,8 +116,7 @@ Vec<3> towards_tip(std::span<const MeasuredCell> cells, const Vec<3>& axis, std:
 
 /// Cells that lie in one another, however different they are in size.
 void refuse_nested(const std::string& file, std::span<const MeasuredCell> cells) {
-  constexpr double nested =
-      0.2;  // the nearest in files of tools/make_cells.py --spread: 0.27, beside crooked long cells
+  constexpr double nested = 0.2;  // the nearest in files of tools/make_cells.py --spread: 0.27
   const auto neighbours = contacts(cells);
   const auto name = [&](std::size_t i) { return fmt::format("cell {} (line {})", cells[i].label, cells[i].line); };
   for (std::size_t i = 0; i < cells.size(); ++i) {
