@@ -148,9 +148,10 @@ TEST(MeasuredRoot, SpecksBecomePartOfTheCellThatTheyTouch) {
 }
 
 TEST(MeasuredRoot, CellsOfTheirNeighboursSizeAreKept) {
-  std::vector<MeasuredCell> cells = block(12, 3, 0.5);  // an eighth of the volume, from one layer to the next
+  std::vector<MeasuredCell> cells = block(12, 3);
+  cells.push_back(cell_at(500, {60.0, 28.0, 10.0}, Vec<3>::Constant(2.5)));  // an eighth of the one that it touches
   EXPECT_TRUE(merge_specks(cells).empty());
-  cells.push_back(cell_at(500, {60.0, 200.0, 10.0}, {0.5, 0.5, 0.5}));  // touches nothing
+  cells.push_back(cell_at(501, {60.0, 200.0, 10.0}, {0.5, 0.5, 0.5}));  // touches nothing
   EXPECT_TRUE(merge_specks(cells).empty());
 }
 
