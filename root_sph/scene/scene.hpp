@@ -36,7 +36,7 @@ inline constexpr EnumName<Base> enum_names<Base>[] = {{Base::clamped, "clamped"}
 enum class TipAxis { found, plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
 template <>
 inline constexpr EnumName<TipAxis> enum_names<TipAxis>[] = {
-    {TipAxis::found, "auto"}, {TipAxis::plus_x, "+x"},  {TipAxis::minus_x, "-x"}, {TipAxis::plus_y, "+y"},
+    {TipAxis::found, "auto"}, {TipAxis::plus_x, "+x"}, {TipAxis::minus_x, "-x"}, {TipAxis::plus_y, "+y"},
     {TipAxis::minus_y, "-y"}, {TipAxis::plus_z, "+z"}, {TipAxis::minus_z, "-z"}};
 
 /// Either a capsule filled with a lattice (a rectangle or cylinder with a half disc or half sphere;
