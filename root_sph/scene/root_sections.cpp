@@ -193,7 +193,7 @@ SectionSpec cell_columns_section() {
     titles_key(&Co::semi_axes, "semi_axes", "Semi-axes in descending order: three titles.", "r1, r2, r3"),
     titles_key(&Co::diameters, "diameters", "Whole axes in descending order, in place of semi_axes.", "none"),
     titles_key(&Co::inertia, "inertia_tensor", "Inertia of unit mass, in place of axes: six titles, xx, xy, xz, yy, yz, zz.",
-               "inertia_tensor-0-0, -0-1, -0-2, -1-1, -1-2, -2-2 if there"),
+               "those of regionprops_table, if there"),
     key(&Co::volume, "volume", "-", any_text, "Volume; where it is all there is, cells are balls.", "-")
         .defaults_to("area if there; else of the ellipsoid"),
   }).completed_by(complete_cell_columns);
