@@ -8,6 +8,10 @@ density, Q. Du, V. Faber, M. Gunzburger, SIAM Review 41 (1999) 637: in 3D the ce
 to the power 3/5). Each cell becomes the ellipsoid that has the second moments of its Voronoi cell, so ellipsoids fit
 the cells, touch their neighbours and are turned every way. Volumes grow about tenfold from the tip to the base.
 
+With --spread N the largest cell has N times the volume of the smallest, as in segmented images: rows of cells along
+the axis become one long cell (r1/r3 up to about 10), and one cell in twenty comes with a speck, a small body at its
+surface that the segmentation took for a cell.
+
 Columns: Label; pos (um); e1, e2 (unit axes, e3 = e1 x e2); r1 >= r2 >= r3 (semi-axes, um).
 """
 
@@ -21,6 +25,12 @@ import numpy as np
 
 LLOYD_STEPS = 4
 POINTS_PER_CELL = 60
+TRIED_SHARE = 0.05  # of the cells swallow, where they can, those in front of and behind them, with --spread
+LONGEST_ROW = 8.0
+WIDEST_GAP = 1.3  # between cells of a row, in spacings: no other cell lies in between
+ROW_WIDTH = 0.45  # a cell this near to the axis of a row, in spacings, belongs to it
+SPECK_SHARE = 0.05
+LARGEST_SPECK = 0.1  # of the volume of its cell
 SIZE_RATIO = 8.0  # wanted volume at the base over that at the tip; the cells' scatter makes it about ten
 MICRO_SIGNS = {
     "u": b"u",
@@ -82,9 +92,45 @@ def sums(owner: np.ndarray, values: np.ndarray, cells: int) -> np.ndarray:
     return np.stack([np.bincount(owner, column, cells) for column in values.T], axis=1)
 
 
-def make_cells(
-    cells: int, length: float, radius: float, seed: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def long_cells(rng: np.random.Generator, centres: np.ndarray, spacing: float) -> np.ndarray:
+    """For each cell the one that it becomes a part of: some swallow a straight row of cells along the axis."""
+    becomes = np.arange(len(centres))
+    free = np.ones(len(centres), dtype=bool)
+    for cell in rng.permutation(len(centres))[: int(TRIED_SHARE * len(centres))]:
+        ahead = centres - centres[cell]
+        beside = np.hypot(ahead[:, 1], ahead[:, 2])
+        row = np.flatnonzero((beside < ROW_WIDTH * spacing) & (np.abs(ahead[:, 0]) < 0.5 * LONGEST_ROW * spacing))
+        gaps = np.diff(np.sort(ahead[row, 0]))
+        if free[row].all() and np.all(gaps < WIDEST_GAP * spacing):
+            free[row] = False
+            becomes[row] = cell
+    return np.unique(becomes, return_inverse=True)[1]
+
+
+Cells = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
+
+def add_specks(rng: np.random.Generator, made: Cells, spread: float) -> Cells:
+    """The cells, and specks at the surface of some of them: the smallest has 1/spread of the largest cell's volume."""
+    centres, e1, e2, semi_axes = made
+    volumes = semi_axes.prod(axis=1)
+    smallest = volumes.max() / spread
+    able = np.flatnonzero(LARGEST_SPECK * volumes > smallest)
+    hosts = rng.choice(able, size=min(len(able), max(1, int(SPECK_SHARE * len(centres)))), replace=False)
+    share = rng.uniform(size=len(hosts))
+    share[0] = 0.0
+    speck_volume = smallest * (LARGEST_SPECK * volumes[hosts] / smallest) ** share
+    slender = np.stack([rng.uniform(1.0, 2.0, len(hosts)), np.ones(len(hosts)), rng.uniform(0.5, 1.0, len(hosts))], 1)
+    specks = slender * np.cbrt(speck_volume / slender.prod(axis=1))[:, None]
+    side = rng.normal(size=(len(hosts), 3))
+    side /= np.linalg.norm(side, axis=1)[:, None]
+    axes = np.stack([e1[hosts], e2[hosts], np.cross(e1[hosts], e2[hosts])], axis=1)
+    at = centres[hosts] + np.einsum("nk,nkx->nx", side * semi_axes[hosts], axes)
+    x = np.vstack([centres, at])
+    return x, np.vstack([e1, e1[hosts]]), np.vstack([e2, e2[hosts]]), np.vstack([semi_axes, specks])
+
+
+def make_cells(cells: int, length: float, radius: float, seed: int, spread: float | None = None) -> Cells:
     """Centres (n, 3), e1 (n, 3), e2 (n, 3) and semi-axes (n, 3) of the cells; lengths in um."""
     rng = np.random.default_rng(seed)
     initial, volume = sample_capsule(rng, 20 * cells, length, radius)
@@ -101,6 +147,9 @@ def make_cells(
 
     points, weight = sample_capsule(rng, 4 * POINTS_PER_CELL * cells, length, radius)
     owner = nearest_centre(points, centres)
+    if spread is not None:
+        becomes = long_cells(rng, centres, np.cbrt(np.pi * radius**2 * length / cells))
+        owner, cells = becomes[owner], int(becomes.max()) + 1
     if np.bincount(owner, minlength=cells).min() < 10:
         raise ValueError("a cell came out too small to measure; use fewer cells or another seed")
     total = np.bincount(owner, weight, cells)[:, None]
@@ -111,13 +160,16 @@ def make_cells(
     moments = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(cells, 3, 3)
     variance, axes = np.linalg.eigh(moments)  # ascending
     semi_axes = np.sqrt(5.0 * variance[:, ::-1])  # a uniform ellipsoid's variance along an axis is r^2/5
-    order = np.lexsort((centres[:, 2], centres[:, 1], centres[:, 0]))
-    return centres[order], axes[order, :, 2], axes[order, :, 1], semi_axes[order]
+    made = centres, axes[:, :, 2], axes[:, :, 1], semi_axes
+    if spread is not None:
+        made = add_specks(rng, made, spread)
+    order = np.lexsort(made[0].T[::-1])
+    return made[0][order], made[1][order], made[2][order], made[3][order]
 
 
-def cell_file(cells: int, length: float, radius: float, seed: int, micro_sign: str) -> bytes:
+def cell_file(made: Cells, micro_sign: str) -> bytes:
     """The file's bytes."""
-    centres, e1, e2, semi_axes = make_cells(cells, length, radius, seed)
+    centres, e1, e2, semi_axes = made
     header = HEADER.encode().replace(b"(um)", b"(" + MICRO_SIGNS[micro_sign] + b"m)")
     rows = (
         f"{label}, " + ", ".join([*(f"{v:.4f}" for v in c), *(f"{v:.9f}" for v in (*a, *b)), *(f"{v:.4f}" for v in r)])
@@ -138,19 +190,27 @@ def main() -> int:
         default="u",
         help="how the header's micro sign is written: the letter u, UTF-8, Latin-1, or a broken byte (default: u)",
     )
+    parser.add_argument(
+        "--spread",
+        type=float,
+        metavar="N",
+        help="long cells and specks: the largest cell has N times the volume of the smallest (default: none of them)",
+    )
     parser.add_argument("--out", type=Path, default=Path("cells.csv"), help="file to write (default: %(default)s)")
     options = parser.parse_args()
     if options.cells < 10:
         parser.error(f"--cells {options.cells}: at least 10")
     if not 0.0 < options.radius_um <= options.length_um:
         parser.error(f"--radius-um {options.radius_um}: more than 0 and at most the length ({options.length_um} um)")
+    if options.spread is not None and not options.spread > 1.0:
+        parser.error(f"--spread {options.spread}: more than 1")
     try:
-        content = cell_file(options.cells, options.length_um, options.radius_um, options.seed, options.micro_sign)
-        options.out.write_bytes(content)
+        made = make_cells(options.cells, options.length_um, options.radius_um, options.seed, options.spread)
+        options.out.write_bytes(cell_file(made, options.micro_sign))
     except (OSError, ValueError) as error:
         print(f"make_cells: {error}", file=sys.stderr)
         return 1
-    print(f"{options.out}: {options.cells} cells, {options.length_um:g} um long, radius {options.radius_um:g} um")
+    print(f"{options.out}: {len(made[0])} cells, {options.length_um:g} um long, radius {options.radius_um:g} um")
     return 0
 
 

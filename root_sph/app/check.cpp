@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "root_sph/app/cell_file_json.hpp"
 #include "root_sph/app/commands.hpp"
 #include "root_sph/core/errors.hpp"
 #include "root_sph/effects/anisotropy/anisotropy.hpp"
@@ -101,11 +102,18 @@ Json examine(const Scene& scene) {
     lattice = lattice_numbers(*fit, scene.root, model->initial.volume, Dim);
     lattice_text = describe_lattice(*fit, scene.root, model->initial.volume, Dim);
   }
+  Json measured, measured_text;
+  if (const auto& root = model->initial.measured) {
+    measured = measured_numbers(*root);
+    measured_text = describe(*root);
+  }
   Json found{{"scene", scene.scene.name},
              {"dimension", Dim},
              {"cells", cells},
              {"lattice", lattice},
              {"lattice_text", lattice_text},
+             {"cell_file", measured},
+             {"cell_file_text", measured_text},
              {"effects", effects},
              {"fields", fields},
              {"bytes_per_cell", bytes},
@@ -157,6 +165,7 @@ void print(const Json& found) {
   fmt::print("{}: {}D, {} cells, law {}\n", found["scene"].get<std::string>(), found["dimension"].get<int>(),
              found["cells"].get<int>(), found["law"].get<std::string>());
   if (const Json& text = found["lattice_text"]; text.is_string()) fmt::print("lattice: {}\n", text.get<std::string>());
+  for (const Json& line : found["cell_file_text"]) fmt::print("cell file: {}\n", line.get<std::string>());
   fmt::print("\neffects\n");
   for (const Json& e : found["effects"]) {
     fmt::print("  {:<22} {:<15} {}\n", e["name"].get<std::string>(),

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "root_sph/app/accuracy.hpp"
+#include "root_sph/app/cell_file_json.hpp"
 #include "root_sph/app/commands.hpp"
 #include "root_sph/app/picture.hpp"
 #include "root_sph/app/progress.hpp"
@@ -380,6 +381,7 @@ void Run<Dim>::write_summary(const std::string& status) const {
       {"momentum_residual", momentum_residual_max_},
       {"degenerate_cells_max", degenerate_max_},
       {"cell_file_volume_scale", model().initial.volume_scale},
+      {"cell_file", model().initial.measured ? measured_numbers(*model().initial.measured) : nlohmann::ordered_json()},
       {"lattice", lattice},
       {"active_effects", active_effects(scene_)},
       {"fields", fields}};
@@ -405,9 +407,8 @@ ExitStatus Run<Dim>::go() {
     log_.info("closed form: tip speed {:.4f} mm/h, peak strain rate {:.3f} /h", theory.tip_speed_mm_h,
               theory.peak_rate_per_h);
   }
-  if (model().initial.volume_scale != 1.0) {
-    log_.info("volumes of the measured ellipsoids times {:.3f}, so that they fill the tissue",
-              model().initial.volume_scale);
+  if (const auto& measured = model().initial.measured) {
+    for (const std::string& line : describe(*measured)) log_.info("cell file: {}", line);
   }
   if (const auto& fit = model().initial.lattice;
       fit && differs_from_asked(*fit, scene_.root, model().initial.volume, Dim)) {

@@ -18,21 +18,30 @@ namespace {
 // The CSV libraries at hand (Fast C++ CSV Parser, libcsv) want column titles byte by byte as expected or leave
 // lines uncounted. Titles with any bytes for the micro sign, a list of all missing ones, and line numbers need
 // the header taken apart here; splitting the rows in the same way is then all that is left.
-std::vector<std::string_view> split(std::string_view line) {
+std::vector<std::string_view> split(std::string_view line, char separator) {
   std::vector<std::string_view> values;
   while (true) {
-    const std::size_t first = line.find_first_not_of(" \t");
+    const std::size_t first = line.find_first_not_of(separator == '\t' ? " " : " \t");
     const bool quoted = first != std::string_view::npos && line[first] == '"';
     const std::size_t closing = quoted ? line.find('"', first + 1) : 0;
-    const std::size_t comma = closing == std::string_view::npos ? closing : line.find(',', closing);
-    std::string_view value = line.substr(0, comma);
+    const std::size_t end = closing == std::string_view::npos ? closing : line.find(separator, closing);
+    std::string_view value = line.substr(0, end);
     const auto is_padding = [](char c) { return c == ' ' || c == '\t' || c == '"'; };
     while (!value.empty() && is_padding(value.front())) value.remove_prefix(1);
     while (!value.empty() && is_padding(value.back())) value.remove_suffix(1);
     values.push_back(value);
-    if (comma == std::string_view::npos) return values;
-    line.remove_prefix(comma + 1);
+    if (end == std::string_view::npos) return values;
+    line.remove_prefix(end + 1);
   }
+}
+
+// The one that a header holds most often.
+char separator_of(std::string_view header) {
+  char best = ',';
+  for (const char c : {';', '\t'}) {
+    if (std::count(header.begin(), header.end(), c) > std::count(header.begin(), header.end(), best)) best = c;
+  }
+  return best;
 }
 
 // "pos.X (?m)" with any bytes but a letter or digit for "?" becomes "pos.X(um)", spaces aside; "(mm)" stays.
@@ -103,7 +112,8 @@ void CsvReader::read_header() {
     line_number_ = 0;
     fail({}, "the file is empty", {}, "a header: " + columns, table_.whole_remedy);
   }
-  const std::vector<std::string_view> titles = split(line_);
+  separator_ = separator_of(line_);
+  const std::vector<std::string_view> titles = split(line_, separator_);
   width_ = titles.size();
   std::vector<std::string_view> missing;
   for (std::size_t column = 0; column < place_.size(); ++column) {
@@ -121,7 +131,8 @@ void CsvReader::read_header() {
   }
   if (!missing.empty()) {
     fail({}, fmt::format("columns are missing: {}", fmt::join(missing, ", ")), printable(line_),
-         fmt::format("a header with {}, separated by commas, in any order", columns), table_.header_remedy);
+         fmt::format("a header with {}, separated by commas, semicolons or tabs, in any order", columns),
+         table_.header_remedy);
   }
 }
 
@@ -133,13 +144,29 @@ bool CsvReader::next_row() {
          table_.whole_remedy);
   }
   ++rows_;
-  values_ = split(line_);
+  values_ = split(line_, separator_);
   const auto beyond = values_.begin() + static_cast<std::ptrdiff_t>(std::min(width_, values_.size()));
   if (std::any_of(beyond, values_.end(), [](std::string_view value) { return !value.empty(); })) {
     fail({}, "the row has more values than the header has columns", fmt::format("{} values", values_.size()),
-         fmt::format("{} values", width_), "write numbers with a decimal point, not a comma");
+         fmt::format("{} values", width_),
+         separator_ == ',' ? "write numbers with a decimal point, or separate them by semicolons" : table_.row_remedy);
   }
   return true;
+}
+
+// A comma separates decimals where it does not separate values. Points for thousands would make numbers a thousandfold
+// too small, so a table has one sign or the other.
+std::string CsvReader::with_decimal_point(std::size_t column, std::string_view text) const {
+  std::string number(text);
+  const std::size_t sign = number.find_first_of(".,");
+  if (sign == std::string::npos) return number;
+  if (decimal_sign_ == 0) decimal_sign_ = number[sign];
+  if (number.find_first_of(".,", sign + 1) != std::string::npos || number[sign] != decimal_sign_) {
+    fail_at(column, "points and commas are mixed", printable(text), "numbers such as 1234.5, or all such as 1234,5",
+            "write numbers without a sign for thousands");
+  }
+  number[sign] = '.';
+  return number;
 }
 
 double CsvReader::number(std::size_t column) const {
@@ -147,8 +174,9 @@ double CsvReader::number(std::size_t column) const {
     fail_at(column, "the value is missing", fmt::format("a row of {} values", values_.size()),
             fmt::format("{} values, as in the header", width_));
   }
-  std::string_view text = values_[place_[column]];
-  const std::string given = printable(text);
+  const std::string given = printable(values_[place_[column]]);
+  const std::string plain = with_decimal_point(column, values_[place_[column]]);
+  std::string_view text = plain;
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -159,6 +187,20 @@ double CsvReader::number(std::size_t column) const {
     fail_at(column, "not a finite number, or beyond what a number can hold", given, "a finite number");
   }
   return value;
+}
+
+std::vector<std::string> csv_titles(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  const std::string_view header = text.substr(0, text.find_first_of("\r\n"));
+  std::vector<std::string> titles;
+  for (const std::string_view title : split(header, separator_of(header))) titles.emplace_back(title);
+  return titles;
+}
+
+bool holds_title(const std::vector<std::string>& titles, std::string_view wanted) {
+  return std::any_of(titles.begin(), titles.end(),
+                     [plain = plain_title(wanted)](const std::string& title) { return plain_title(title) == plain; });
 }
 
 std::string read_users_file(const std::filesystem::path& path, const std::string& key, const std::string& allowed) {

@@ -19,8 +19,9 @@ struct CsvTable {
   std::string row_remedy;                 ///< where a value is wrong
 };
 
-/// Reads the header, then row after row. Empty lines, a byte order mark, CRLF, quotes and spaces around values don't
-/// matter, nor do the bytes that stand for the micro sign in a title.
+/// Reads the header, then row after row. Values are separated by commas, semicolons or tabs, whichever the header
+/// holds most of; numbers have a decimal point, or all have a comma. Empty lines, a byte order mark, CRLF, quotes and
+/// spaces around values don't matter, nor do the bytes that stand for the micro sign in a title.
 class CsvReader {
  public:
   /// `text` and `table` must outlive the reader; `name` stands for the file in messages.
@@ -42,6 +43,7 @@ class CsvReader {
  private:
   bool next_line();
   void read_header();
+  std::string with_decimal_point(std::size_t column, std::string_view text) const;
 
   std::string_view rest_, line_;
   std::string name_;
@@ -51,7 +53,14 @@ class CsvReader {
   std::size_t width_ = 0;
   std::size_t rows_ = 0;
   int line_number_ = 0;
+  char separator_ = ',';
+  mutable char decimal_sign_ = 0;  ///< of the first number that has one
 };
+
+/// The titles in the first line that is not empty.
+std::vector<std::string> csv_titles(std::string_view text);
+/// Is this one among them? Spaces and how the micro sign is written don't matter.
+bool holds_title(const std::vector<std::string>& titles, std::string_view wanted);
 
 /// The text of a file that the user names under `key`; InputError where there is none.
 std::string read_users_file(const std::filesystem::path& path, const std::string& key, const std::string& allowed);

@@ -12,7 +12,6 @@
 #include "root_sph/core/errors.hpp"
 #include "root_sph/effects/division/division.hpp"
 #include "root_sph/effects/table.hpp"
-#include "root_sph/io/cell_file.hpp"
 #include "root_sph/kernels/wendland.hpp"
 #include "root_sph/model/theory.hpp"
 #include "root_sph/model/whole_tissue.hpp"
@@ -152,50 +151,6 @@ InitialReport fill_capsule(const Scene& scene, Tissue<Dim>& tissue) {
           .across = static_cast<double>(lattice.across)};
 }
 
-/// Rotation that takes an axis of the file to +x.
-Mat<3> to_tip_axis(TipAxis tip) {
-  const int axis = static_cast<int>(tip) / 2;
-  Vec<3> from = Vec<3>::Zero();
-  from[axis] = static_cast<int>(tip) % 2 ? -1.0 : 1.0;
-  return Eigen::Quaterniond::FromTwoVectors(from, Vec<3>::UnitX()).toRotationMatrix();
-}
-
-/// Factor that makes volumes fill the tissue: ellipsoids leave gaps. In the interior the kernel sum of the volumes,
-/// sum_j V_j W_ij, is 1 where volumes fill space, so the factor is the median of its inverse over interior cells;
-/// one factor for all cells keeps the measured ratios of their sizes.
-double filling_scale(const Tissue<3>& tissue, double eta) {
-  const auto& cells = tissue.cells;
-  std::vector<Mat<3>> metrics;
-  for (std::size_t i = 0; i < cells.size(); ++i) metrics.push_back(cell_metric<3>(cells.shape[i], eta));
-  const PairList list = find_pairs<3>(cells.position.values(), metrics);
-  std::vector<double> sum(cells.size()), reach(cells.size(), 0.0);
-  std::vector<Vec<3>> side(cells.size(), Vec<3>::Zero());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    sum[i] = cells.volume[i] * wendland<3>(0.0, std::sqrt(metrics[i].determinant()));
-  }
-  for (const auto& [i, j] : list.pairs) {
-    const Vec<3> r = cells.position[j] - cells.position[i];
-    const Mat<3> metric = 0.5 * (metrics[i] + metrics[j]);
-    const double w = wendland<3>(std::sqrt(r.dot(metric * r)), std::sqrt(metric.determinant()));
-    sum[i] += cells.volume[j] * w;
-    sum[j] += cells.volume[i] * w;
-    side[i] += cells.volume[j] * w * r;
-    side[j] -= cells.volume[i] * w * r;
-    reach[i] += cells.volume[j] * w * r.norm();
-    reach[j] += cells.volume[i] * w * r.norm();
-  }
-  std::vector<double> inverse;
-  for (const double most_one_sided : {0.2, 2.0}) {  // a root without interior cells: all of them
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (reach[i] > 0.0 && side[i].norm() < most_one_sided * reach[i]) inverse.push_back(1.0 / sum[i]);
-    }
-    if (!inverse.empty()) break;
-  }
-  if (inverse.empty()) return 1.0;
-  std::nth_element(inverse.begin(), inverse.begin() + std::ssize(inverse) / 2, inverse.end());
-  return inverse[inverse.size() / 2];
-}
-
 /// Diameter of the cylinder with this tissue's volume and length, in cells.
 double cells_across(const Tissue<3>& tissue, double cell_size_mm) {
   const auto& volume = tissue.cells.volume.values();
@@ -205,44 +160,38 @@ double cells_across(const Tissue<3>& tissue, double cell_size_mm) {
   return std::sqrt(4.0 / std::numbers::pi * section) / cell_size_mm;
 }
 
-InitialReport fill_from_file(const Scene& scene, Tissue<3>& tissue, double eta) {
-  const std::vector<MeasuredCell> measured = read_cell_file(scene.root.cells_file);
-  const Mat<3> turn = to_tip_axis(scene.root.tip_axis);
-  Vec<3> lower = Vec<3>::Constant(1e300), centre = Vec<3>::Zero();
-  double size = 0.0;
+InitialReport fill_from_file(const Scene& scene, Tissue<3>& tissue) {
+  const MeasuredRoot root = read_measured_root(scene);
+  const double scale = root.report.hull_mm3 / root.report.cells_mm3;
+  Vec<3> centre = Vec<3>::Zero();
+  // A clamp holds whatever it grips. Cells that reach into it, and could move, would grow against those around them.
+  constexpr double gripped = 0.8;  // of the half length: a cell that ends where the clamp does is not
+  const auto half_length = [](const MeasuredCell& cell) { return std::sqrt(5.0 * covariance(cell)(0, 0)); };
+  double base = 1e300, tip = -1e300, size = 0.0;
   std::int64_t highest = -1;
-  for (const MeasuredCell& cell : measured) {
-    const Vec<3> x = turn * cell.position_mm;
-    lower = lower.cwiseMin(x);
-    centre += x / static_cast<double>(measured.size());
-    size += std::cbrt(volume_mm3(cell)) / static_cast<double>(measured.size());
+  for (const MeasuredCell& cell : root.cells) {
+    base = std::min(base, cell.position_mm[0] - half_length(cell));
+    tip = std::max(tip, cell.position_mm[0]);
+    centre += cell.position_mm / static_cast<double>(root.cells.size());
+    size += std::cbrt(scale * cell.volume_mm3) / static_cast<double>(root.cells.size());
     highest = std::max(highest, cell.label);
   }
   const double clamp_mm =
       scene.root.is_clamped() ? scene.root.clamp_length_mm.value_or(clamp_length_cells * size) : 0.0;
-  refuse_parts(scene.root.cells_file, measured);
-  const Vec<3> origin(lower[0] + clamp_mm, centre[1], centre[2]);
-  for (const MeasuredCell& cell : measured) {
-    const Vec<3> x = turn * cell.position_mm - origin;
-    const std::size_t i = add_cell<3>(tissue, x, volume_mm3(cell), turn * shape_matrix(cell) * turn.transpose(),
-                                      Mat<3>::Identity(), clamp_mm > 0.0 && x[0] < 0.0);
+  const Vec<3> origin(base + clamp_mm, centre[1], centre[2]);
+  for (const MeasuredCell& cell : root.cells) {
+    const Vec<3> x = cell.position_mm - origin;
+    const std::size_t i = add_cell<3>(tissue, x, scale * cell.volume_mm3, shape_matrix(cell), Mat<3>::Identity(),
+                                      clamp_mm > 0.0 && x[0] < gripped * half_length(cell));
     tissue.cells.cell_id[i] = cell.label;
+    tissue.cells.distance_to_tip[i] = tip - cell.position_mm[0];
   }
   tissue.next_cell_id = highest + 1;
-
-  const double scale = filling_scale(tissue, eta);
-  refuse_overlap(scene.root.cells_file, scale);
-  double tip = -1e300;
-  for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
-    tissue.cells.volume[i] *= scale;
-    tip = std::max(tip, tissue.cells.position[i][0]);
-  }
-  for (std::size_t i = 0; i < tissue.cells.size(); ++i) {
-    tissue.cells.distance_to_tip[i] = tip - tissue.cells.position[i][0];
-  }
-  const double filled_size = size * std::cbrt(scale);
-  return {
-      .cell_size_mm = filled_size, .volume_scale = scale, .lattice = {}, .across = cells_across(tissue, filled_size)};
+  return {.cell_size_mm = size,
+          .volume_scale = scale,
+          .lattice = {},
+          .measured = root.report,
+          .across = cells_across(tissue, size)};
 }
 
 template <int Dim>
@@ -266,7 +215,7 @@ InitialReport make_initial_cells(const Scene& scene, Tissue<Dim>& tissue, double
   if (scene.root.is_lattice()) {
     report = fill_capsule<Dim>(scene, tissue);
   } else if constexpr (Dim == 3) {
-    report = fill_from_file(scene, tissue, eta);
+    report = fill_from_file(scene, tissue);
   } else {
     throw InputError({scene.file, 0, "root.cells_file", "cells measured by microscopy are three-dimensional",
                       "dimension = 2", "dimension = 3", "set scene.dimension = 3"});

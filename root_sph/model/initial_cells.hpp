@@ -7,14 +7,16 @@
 
 #include "root_sph/dynamics/tissue.hpp"
 #include "root_sph/model/lattice.hpp"
+#include "root_sph/model/measured_root.hpp"
 #include "root_sph/scene/scene.hpp"
 
 namespace rootsoil {
 
 struct InitialReport {
   double cell_size_mm = 0.0;  ///< typical length of a cell, volume^(1/Dim)
-  double volume_scale = 1.0;  ///< cell file: factor on the ellipsoids' volumes that makes them fill the tissue
+  double volume_scale = 1.0;  ///< cell file: factor on the cells' volumes that makes them fill the tissue
   std::optional<Lattice> lattice = std::nullopt;
+  std::optional<MeasuredRootReport> measured = std::nullopt;
   double volume = 0.0;  ///< of the cells that can move, mm^Dim
   double across = 0.0;  ///< cells across the root, on average along it
 };

@@ -31,9 +31,10 @@ struct Flaw {
   std::size_t cell = 0;  ///< the first to blame
 };
 
+/// \param joined look as well whether all hang together
 template <int Dim>
 std::optional<Flaw> find_flaw(std::span<const Vec<Dim>> positions, std::span<const Mat<Dim>> shapes,
-                              const std::function<std::string(std::size_t)>& name) {
+                              const std::function<std::string(std::size_t)>& name, bool joined) {
   std::vector<Mat<Dim>> metrics;
   for (const Mat<Dim>& shape : shapes) metrics.push_back(cell_metric<Dim>(shape, cell_lengths));
   const auto size_mm = [&](std::size_t i) { return 2.0 * std::pow(shapes[i].determinant(), -0.5 / Dim); };
@@ -62,14 +63,13 @@ std::optional<Flaw> find_flaw(std::span<const Vec<Dim>> positions, std::span<con
                     size_mm(i), size_mm(j)),
         fmt::format("centres at least {} of a cell's length apart", same_place), static_cast<std::size_t>(j)};
   }
+  if (!joined) return std::nullopt;
   const auto groups = components(positions.size(), find_pairs<Dim>(positions, metrics).pairs);
   if (groups.size() > 1) return part(groups.back());
   return std::nullopt;
 }
 
-}  // namespace
-
-void refuse_parts(const std::string& file, std::span<const MeasuredCell> cells) {
+void refuse_flaw(const std::string& file, std::span<const MeasuredCell> cells, bool joined) {
   std::vector<Vec<3>> positions;
   std::vector<Mat<3>> shapes;
   for (const MeasuredCell& cell : cells) {
@@ -77,19 +77,26 @@ void refuse_parts(const std::string& file, std::span<const MeasuredCell> cells) 
     shapes.push_back(shape_matrix(cell));
   }
   const auto name = [&](std::size_t i) { return fmt::format("cell {} (line {})", cells[i].label, cells[i].line); };
-  if (const auto flaw = find_flaw<3>(positions, shapes, name)) {
+  if (const auto flaw = find_flaw<3>(positions, shapes, name, joined)) {
     throw InputError({file, cells[flaw->cell].line, "root.cells_file", flaw->what, flaw->given, flaw->allowed,
                       "remove what the segmentation left behind (stray cells, specks, cells given twice), or add the "
-                      "cells in between; are positions and semi-axes all in um?"});
+                      "cells in between; are positions and semi-axes all in one unit?"});
   }
 }
 
+}  // namespace
+
+void refuse_piles(const std::string& file, std::span<const MeasuredCell> cells) { refuse_flaw(file, cells, false); }
+
+void refuse_parts(const std::string& file, std::span<const MeasuredCell> cells) { refuse_flaw(file, cells, true); }
+
 void refuse_overlap(const std::string& file, double volume_scale) {
-  constexpr double least = 0.4;  // 0.9 to 1.9 where ellipsoids touch; 0.125 to 0.27 where diameters are semi-axes
+  constexpr double least = 0.5;  // 0.75 to 1.9 where ellipsoids touch; 0.15 to 0.4 where diameters are semi-axes
   if (volume_scale >= least) return;
   throw InputError({file, 0, "root.cells_file", "the cells overlap: together they are larger than the tissue",
                     fmt::format("volumes would have to be multiplied by {:.3g} to fill it once", volume_scale),
-                    fmt::format("at least {}", least), "are r1, r2 and r3 semi-axes, not diameters, and all in um?"});
+                    fmt::format("at least {}", least),
+                    "are r1, r2 and r3 semi-axes, not diameters, and all in the unit of the positions?"});
 }
 
 template <int Dim>
@@ -102,7 +109,7 @@ void refuse_torn_lattice(const Scene& scene, const Tissue<Dim>& tissue) {
     const Vec<Dim> x = cells.position[i];
     return fmt::format("the cell at ({:.4g}) mm", fmt::join(x.data(), x.data() + Dim, ", "));
   };
-  if (const auto flaw = find_flaw<Dim>(cells.position.values(), cells.shape.values(), name)) {
+  if (const auto flaw = find_flaw<Dim>(cells.position.values(), cells.shape.values(), name, true)) {
     scene.origins.fail(root.curvature_per_mm != 0.0 ? "root.curvature_per_mm"
                        : root.size_variation != 0.0 ? "root.size_variation"
                                                     : "root.jitter",

@@ -12,7 +12,10 @@
 
 namespace rootsoil {
 
-/// Cells of a file that lie apart from the others, or in one place. Before anything is computed with them.
+/// Cells of a file that lie far apart from the others, or in one place. Before anything is computed with them.
+void refuse_piles(const std::string& file, std::span<const MeasuredCell> cells);
+
+/// Cells of a file that are not joined to the others.
 void refuse_parts(const std::string& file, std::span<const MeasuredCell> cells);
 
 /// Ellipsoids of a file that would have to shrink much to fill the tissue once.

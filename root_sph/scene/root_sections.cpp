@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "root_sph/core/cell_columns.hpp"
 #include "root_sph/scene/checks.hpp"
 #include "root_sph/scene/schema_keys.hpp"
 #include "root_sph/scene/schema_sections.hpp"
@@ -76,6 +77,44 @@ void check_lattice(const Scene& scene) {
   }
 }
 
+void complete_cell_columns(Scene& scene) {
+  const CellColumns& columns = *scene.find<CellColumns>();
+  const Origins& origins = scene.origins;
+  if (scene.root.is_lattice()) {
+    origins.fail("root.columns", "there is no table with these columns", {}, "only together with cells_file",
+                 "remove the section, or give root.cells_file");
+  }
+  const auto check_size = [&](const char* key, const Texts& titles, std::size_t size) {
+    if (titles.empty() || titles.size() == size) return;
+    origins.fail(fmt::format("root.columns.{}", key), fmt::format("these are not {} titles", size), toml_text(titles),
+                 fmt::format("{} titles of columns", size), "name the columns as the file's first line does");
+  };
+  check_size("position", columns.position, 3);
+  check_size("e1", columns.e1, 3);
+  check_size("e2", columns.e2, 3);
+  check_size("semi_axes", columns.semi_axes, 3);
+  check_size("diameters", columns.diameters, 3);
+  check_size("inertia_tensor", columns.inertia, 6);
+  const auto refuse_both = [&](const char* key, const Texts& titles, const char* other, const Texts& other_titles) {
+    if (titles.empty() || other_titles.empty()) return;
+    origins.fail(fmt::format("root.columns.{}", key), fmt::format("{} says the same", other), toml_text(titles), {},
+                 "give one of the two");
+  };
+  refuse_both("diameters", columns.diameters, "semi_axes", columns.semi_axes);
+  refuse_both("inertia_tensor", columns.inertia, "semi_axes", columns.semi_axes);
+  refuse_both("inertia_tensor", columns.inertia, "diameters", columns.diameters);
+}
+
+/// Titles in a list, empty where the file's own names hold.
+Key<CellColumns> titles_key(Texts CellColumns::*member, const std::string& name, const std::string& meaning,
+                            const std::string& usual) {
+  Key<CellColumns> k = key(member, name, "-", any_text, meaning, "-");
+  k.get = [member](const CellColumns& columns) {
+    return (columns.*member).empty() ? std::nullopt : std::optional<Value>(columns.*member);
+  };
+  return std::move(k).defaults_to(usual);
+}
+
 void complete_root(Scene& scene) { scene.root.is_lattice() ? check_lattice(scene) : complete_cells_file(scene); }
 
 std::string law_meanings() {
@@ -113,9 +152,12 @@ SectionSpec root_section() {
   using Ro = RootSection;
   return section<Ro>("root", required, "The cells at the start: a capsule filled with a lattice, or a cell file.",
                      [](auto& s) { return &s.root; }, {
-    key(&Ro::cells_file, "cells_file", "-", any_text, "Cells from microscopy (CSV in microns), relative to this file.",
-        "MorphoGraphX export").names_file(),
-    key(&Ro::tip_axis, "tip_axis", "Direction of the tip in the cell file.", "-").only_with("cells_file"),
+    key(&Ro::cells_file, "cells_file", "-", any_text,
+        "Cells from microscopy (a table with a row a cell), relative to this file.",
+        "MorphoGraphX export, scikit-image regionprops_table").names_file(),
+    key(&Ro::tip_axis, "tip_axis",
+        "Direction of the tip in the cell file, nearly. auto: the end with the smaller cells. The root is turned: its own "
+        "axis onto +x, the cell furthest from it to +y.", "-").only_with("cells_file"),
     key(&Ro::length_mm, "length_mm", "mm", above(0).up_to(1e3, microns), "From the base to the tip.", "paper 4.4")
         .required().only_without("cells_file"),
     key(&Ro::radius_mm, "radius_mm", "mm", above(0).up_to(20, microns), "Radius (2D: half the width).", "paper 4.4")
@@ -136,6 +178,25 @@ SectionSpec root_section() {
     key(&Ro::clamp_length_mm, "clamp_length_mm", "mm", above(0).up_to(1e3, microns),
         "Length held at the base.", "docs/physics.md 6").only_where("base", {"clamped"}).defaults_to("three cells"),
   }).completed_by(complete_root);
+}
+
+SectionSpec cell_columns_section() {
+  using Co = CellColumns;
+  return section<Co>("root.columns", optional, "What the columns of cells_file are called; needed where it differs from "
+                     "MorphoGraphX exports and regionprops_table, or where no title names the unit.", {
+    key(&Co::unit, "unit", "-", one_of(names_of<LengthUnit>()), "Of lengths in the table; areas and volumes are powers of it.",
+        "-").defaults_to("what titles say: (mm), (um), (nm)"),
+    key(&Co::label, "label", "-", any_text, "A whole number for each cell.", "-").defaults_to("Label"),
+    titles_key(&Co::position, "position", "Centre of the cell: three titles.", "pos.X, pos.Y, pos.Z or centroid-0 ..."),
+    titles_key(&Co::e1, "e1", "Unit vector of the longest axis: three titles.", "e1.X, e1.Y, e1.Z"),
+    titles_key(&Co::e2, "e2", "Unit vector of the middle axis: three titles.", "e2.X, e2.Y, e2.Z"),
+    titles_key(&Co::semi_axes, "semi_axes", "Semi-axes in descending order: three titles.", "r1, r2, r3"),
+    titles_key(&Co::diameters, "diameters", "Whole axes in descending order, in place of semi_axes.", "none"),
+    titles_key(&Co::inertia, "inertia_tensor", "Inertia of unit mass, in place of axes: six titles, xx, xy, xz, yy, yz, zz.",
+               "those of regionprops_table, if there"),
+    key(&Co::volume, "volume", "-", any_text, "Volume; where it is all there is, cells are balls.", "-")
+        .defaults_to("area if there; else of the ellipsoid"),
+  }).completed_by(complete_cell_columns);
 }
 
 SectionSpec tissue_section() {

@@ -33,11 +33,11 @@ enum class Base { clamped, free };
 template <>
 inline constexpr EnumName<Base> enum_names<Base>[] = {{Base::clamped, "clamped"}, {Base::free, "free"}};
 
-enum class TipAxis { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
+enum class TipAxis { found, plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
 template <>
-inline constexpr EnumName<TipAxis> enum_names<TipAxis>[] = {{TipAxis::plus_x, "+x"}, {TipAxis::minus_x, "-x"},
-                                                            {TipAxis::plus_y, "+y"}, {TipAxis::minus_y, "-y"},
-                                                            {TipAxis::plus_z, "+z"}, {TipAxis::minus_z, "-z"}};
+inline constexpr EnumName<TipAxis> enum_names<TipAxis>[] = {
+    {TipAxis::found, "auto"}, {TipAxis::plus_x, "+x"}, {TipAxis::minus_x, "-x"}, {TipAxis::plus_y, "+y"},
+    {TipAxis::minus_y, "-y"}, {TipAxis::plus_z, "+z"}, {TipAxis::minus_z, "-z"}};
 
 /// Either a capsule filled with a lattice (a rectangle or cylinder with a half disc or half sphere;
 /// the base at x = 0, the tip at x = length_mm) or cells measured by microscopy.
@@ -53,7 +53,7 @@ struct RootSection {
   bool cap = true;                  ///< false: a plain rectangle or cylinder
   // microscopy
   std::string cells_file;  ///< absolute after reading; empty: a lattice
-  TipAxis tip_axis = TipAxis::plus_x;
+  TipAxis tip_axis = TipAxis::found;
   // both
   Base base = Base::clamped;
   std::optional<double> clamp_length_mm;  ///< absent: three cells

@@ -11,12 +11,14 @@ namespace rootsoil::sections {
 
 SectionSpec scene_section();
 SectionSpec root_section();
+SectionSpec cell_columns_section();
 SectionSpec tissue_section();
 SectionSpec numerics_section();
 SectionSpec output_section();
 
 inline std::vector<SectionSpec> of_every_scene() {
-  return {scene_section(), root_section(), tissue_section(), numerics_section(), output_section()};
+  return {scene_section(),  root_section(),     cell_columns_section(),
+          tissue_section(), numerics_section(), output_section()};
 }
 
 }  // namespace rootsoil::sections

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import fcntl
+import json
 import os
 import resource
 import shutil
@@ -335,11 +336,10 @@ NO_TISSUE: dict[str, tuple[list[str], tuple[str, ...]]] = {
             "centres 0.0005 mm apart",
         ),
     ),
-    "speck": ([*TWO_ROWS, cell_row(99, 105, 5, 0.4)], ("1 of 61 cells lies apart", "specks")),
     "speck of nearly no size": ([*TWO_ROWS, cell_row(99, 105, 5, 0.001)], ("cells.csv:62: cell 99 is out of prop",)),
     "cells of nearly no size": (
         [cell_row(k, 10 * (k // 2), 10 * (k % 2), 0.001) for k in range(60)],
-        ("apart from the others", "0.01 mm from the next", "all in um?"),
+        ("apart from the others", "0.01 mm from the next", "all in one unit?"),
     ),
     "diameters": (
         [
@@ -368,6 +368,70 @@ def test_cells_that_are_no_tissue(program: Program, name: str):
     assert_one_message(program("check", scene), BAD_INPUT, *parts)
     assert_one_message(program("run", scene, "--out", "out"), BAD_INPUT, *parts)
     assert not (program.folder / "out").exists()
+
+
+MEASURED = replaced(SMALL, 'name = "small"', "dimension = 3").replace(
+    "length_mm = 0.1\nradius_mm = 0.02\ncell_size_mm = 0.01", 'cells_file = "cells.csv"'
+)
+BLOCK = [(100 * i + 10 * j + k, 10.0 * i, 10.0 * j, 10.0 * k) for i in range(12) for j in range(4) for k in range(4)]
+
+
+def block_rows(cells=BLOCK) -> str:
+    return "".join(cell_row(label, x, y, z=z) for label, x, y, z in cells)
+
+
+def test_what_was_found_in_a_cell_file(program: Program):
+    """`check` says how many cells, how large, along which axis, and what became of specks."""
+    rows = block_rows() + cell_row(9999, 60, 35.5, 0.6, z=10)
+    (program.folder / "cells.csv").write_text(CELLS_HEADER + rows)
+    done = program("check", program.scene(MEASURED))
+    assert done.status == 0, done.err
+    for part in (
+        "193 cells in the file, 0.12 mm long",
+        "tip towards +x",
+        "turned by 0.",
+        "1 specks merged into the cells that they touch: 9999 (line 194) into 631",
+        "volumes are multiplied by 1.9",
+    ):
+        assert part in done.out, done.out
+    found = json.loads(program("check", program.scene(MEASURED), "--json").out)["cell_file"]
+    assert found["merged"] == [{"label": 9999, "line": 194, "into": 631}]
+    assert found["hull_mm3"] == pytest.approx(0.12 * 0.04 * 0.04, rel=0.06)
+
+
+def test_a_cell_file_that_lies_another_way(program: Program):
+    """Across the asked axis: refused, with what to write instead; a cube has no axis."""
+    (program.folder / "cells.csv").write_text(CELLS_HEADER + block_rows())
+    asked = replaced(MEASURED, 'cells_file = "cells.csv"', 'cells_file = "cells.csv"\ntip_axis = "+y"')
+    assert_one_message(
+        program("check", program.scene(asked)),
+        BAD_INPUT,
+        "cells.csv: root.tip_axis: the root of the cell file lies across the axis",
+        "90 degrees",
+        'tip_axis = "auto"',
+    )
+    (program.folder / "cells.csv").write_text(CELLS_HEADER + block_rows(BLOCK[: 4 * 16]))
+    assert_one_message(program("check", program.scene(MEASURED)), BAD_INPUT, "no axis can be found", "give tip_axis")
+
+
+def test_columns_by_other_names(program: Program):
+    """A table of semicolons and decimal commas, in millimetres, with whole axes."""
+    table = "nr;x;y;z;e1.X;e1.Y;e1.Z;e2.X;e2.Y;e2.Z;a;b;c\n" + "".join(
+        ";".join(str(v).replace(".", ",") for v in (label, x / 1e3, y / 1e3, z / 1e3, 1, 0, 0, 0, 1, 0, *[0.01] * 3))
+        + "\n"
+        for label, x, y, z in BLOCK
+    )
+    (program.folder / "cells.csv").write_text(table)
+    columns = '[root.columns]\nlabel = "nr"\nposition = ["x", "y", "z"]\ndiameters = ["a", "b", "c"]\n'
+    assert_one_message(
+        program("check", program.scene(MEASURED + columns)),
+        BAD_INPUT,
+        "cells.csv:1: column 'x': the unit",
+        "[root.columns]",
+    )
+    done = program("check", program.scene(MEASURED + columns + 'unit = "mm"\n'))
+    assert done.status == 0, done.err
+    assert "192 cells in the file, 0.12 mm long" in done.out
 
 
 def test_hyperbolicity_lost_at_the_ratio_of_the_paper(program: Program):

@@ -30,13 +30,16 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-void expect_the_cell(const std::string& text) {
-  const std::vector<MeasuredCell> cells = parse(text);
-  ASSERT_EQ(cells.size(), 1u) << text;
+void expect_the_cell(const std::vector<MeasuredCell>& cells) {
+  ASSERT_EQ(cells.size(), 1u);
   EXPECT_EQ(cells[0].label, 7);
   EXPECT_TRUE(cells[0].position_mm.isApprox(Vec<3>(1.0, -0.0205, 0.03), 1e-15));
   EXPECT_TRUE(cells[0].semi_axes_mm.isApprox(Vec<3>(0.02, 0.01, 0.005), 1e-15));
   EXPECT_TRUE(cells[0].axes.isApprox(Mat<3>::Identity(), 1e-15));
+}
+void expect_the_cell(const std::string& text) {
+  SCOPED_TRACE(text);
+  expect_the_cell(parse(text));
 }
 
 TEST(CellFile, ReadsMicrometresAsMillimetres) { expect_the_cell(header + row); }
@@ -66,6 +69,82 @@ TEST(CellFile, ColumnsMayComeInAnyOrderWithOthersBetween) {
       "\"cortex, outer\", 5, 7, 30, -20.5, 1000, 0, 1, 0, 1, 0, 0, 20, 10\n");
 }
 
+TEST(CellFile, SemicolonsOrTabsMayStandBetweenValues) {
+  for (const char* separator : {";", "\t", " ; "}) expect_the_cell(replaced(header + row, ", ", separator));
+}
+
+TEST(CellFile, DecimalsMayHaveACommaButNoSignForThousands) {
+  const std::string semicolons = replaced(header + row, ", ", ";");
+  expect_the_cell(replaced(replaced(semicolons, "-20.5", "-20,5"), ";20;", ";20,0;"));
+  expect_the_cell(header + replaced(row, "-20.5", "\"-20,5\""));
+  expect_contains(refusal(replaced(semicolons, "1000", "1,000.0")), "points and commas are mixed");
+  expect_contains(refusal(replaced(semicolons, "1000", "1,000")), "column 'pos.Y (um)': points and commas are mixed");
+}
+
+TEST(CellFile, TitlesNameTheUnit) {
+  expect_the_cell(replaced(header, "(um)", "(mm)") + "7, 1, -0.0205, 0.03, 1, 0, 0, 0, 1, 0, 0.02, 0.01, 0.005\n");
+  expect_the_cell(replaced(header, "r1 (um)", "r1 (nm)") + replaced(row, "20, 10, 5", "20000, 10, 5"));
+  const std::string bare = replaced(header, " (um)", "");
+  const std::string message = refusal(bare + row);
+  expect_contains(message, "cells.csv:1: column 'pos.X': the unit of this column is not known");
+  expect_contains(message, "[root.columns] with unit = ");
+  CellColumns columns;
+  columns.unit = LengthUnit::um;
+  expect_the_cell(parse_cell_file(bare + row, "cells.csv", columns));
+  columns.unit = LengthUnit::mm;
+  expect_contains(test::message_of<InputError>([&] { parse_cell_file(header + row, "cells.csv", columns); }),
+                  "the title names another unit than root.columns.unit");
+}
+
+TEST(CellFile, ColumnsMayHaveOtherNames) {
+  CellColumns columns;
+  columns.label = "id";
+  columns.position = {"x (um)", "y (um)", "z (um)"};
+  columns.e1 = {"a", "b", "c"};
+  columns.diameters = {"L1 (um)", "L2 (um)", "L3 (um)"};
+  columns.volume = "V";
+  columns.unit = LengthUnit::um;
+  const auto cells = parse_cell_file(
+      "id,x (um),y (um),z (um),a,b,c,e2.X,e2.Y,e2.Z,L1 (um),L2 (um),L3 (um),V\n7,1000,-20.5,30,1,0,0,0,1,0,40,20,10,"
+      "5000\n",
+      "cells.csv", columns);
+  expect_the_cell(cells);
+  EXPECT_NEAR(cells[0].volume_mm3, 5e-6, 1e-18);
+}
+
+TEST(CellFile, RegionpropsTablesHaveInertiaInPlaceOfAxes) {
+  // skimage.measure.regionprops_table: the inertia of unit mass, tr(C) 1 - C with C = r^2/5 along the axes
+  const double a = 400.0 / 5.0, b = 100.0 / 5.0, c = 25.0 / 5.0;
+  const std::string table =
+      ",label,area,centroid-0,centroid-1,centroid-2,inertia_tensor-0-0,inertia_tensor-0-1,inertia_tensor-0-2,"
+      "inertia_tensor-1-1,inertia_tensor-1-2,inertia_tensor-2-2\n" +
+      fmt::format("0,7,4000,1000,-20.5,30,{},0,0,{},0,{}\n", b + c, a + c, a + b);
+  CellColumns columns;
+  columns.unit = LengthUnit::um;
+  const MeasuredCell cell = parse_cell_file(table, "cells.csv", columns).at(0);
+  EXPECT_EQ(cell.label, 7);
+  EXPECT_TRUE(cell.position_mm.isApprox(Vec<3>(1.0, -0.0205, 0.03), 1e-15));
+  EXPECT_TRUE(cell.semi_axes_mm.isApprox(Vec<3>(0.02, 0.01, 0.005), 1e-12));
+  EXPECT_NEAR(cell.axes.determinant(), 1.0, 1e-12);
+  EXPECT_NEAR(std::abs(cell.axes(0, 0)), 1.0, 1e-12);
+  EXPECT_NEAR(cell.volume_mm3, 4e-6, 1e-18);
+  EXPECT_TRUE(covariance(cell).isApprox(1e-6 * Vec<3>(a, b, c).asDiagonal().toDenseMatrix(), 1e-12));
+  expect_contains(refusal(table), "the unit of this column is not known");
+  const std::string flat = replaced(table, fmt::format("{},0,{}", a + c, a + b), "1,0,1");
+  expect_contains(test::message_of<InputError>([&] { parse_cell_file(flat, "cells.csv", columns); }),
+                  "cells.csv:2: column 'inertia_tensor-0-0': no body has this inertia");
+}
+
+TEST(CellFile, VolumesAloneMakeBalls) {
+  CellColumns columns;
+  columns.position = {"x (um)", "y (um)", "z (um)"};
+  columns.volume = "V";
+  columns.unit = LengthUnit::um;
+  const auto cell =
+      parse_cell_file("label,x (um),y (um),z (um),V\n1,0,0,0,4188.790204786391\n", "c.csv", columns).at(0);
+  EXPECT_TRUE(cell.semi_axes_mm.isApprox(Vec<3>::Constant(0.01), 1e-12));
+}
+
 TEST(CellFile, EveryCellIsKept) {
   std::string text = header;
   for (int i = 0; i < 3000; ++i) text += std::to_string(i).append(row.substr(1));
@@ -90,7 +169,7 @@ TEST(CellFile, ShapeMatrixIsTheEllipsoid) {
     const Vec<3> end = cell.semi_axes_mm[i] * cell.axes.col(i);
     EXPECT_NEAR(end.dot(q * end), 1.0, 1e-13);
   }
-  EXPECT_NEAR(volume_mm3(cell), 4.0 / 3.0 * std::numbers::pi * 1e-6, 1e-18);
+  EXPECT_NEAR(ellipsoid_volume_mm3(cell), 4.0 / 3.0 * std::numbers::pi * 1e-6, 1e-18);
 }
 
 TEST(CellFile, AMissingFileIsNamed) {
@@ -111,9 +190,10 @@ TEST(CellFile, EmptyFilesAndFilesWithoutCellsAreRefused) {
 }
 
 TEST(CellFile, AllMissingColumnsAreListed) {
-  const std::string message = refusal(replaced(replaced(header, "e1.Y", "f1.Y"), "r3 (um)", "r3 (mm)") + row);
+  const std::string message = refusal(replaced(replaced(header, "e1.Y", "f1.Y"), "r3 (um)", "r3 (m)") + row);
   expect_contains(message, "cells.csv:1: columns are missing: e1.Y, r3 (um)\n");
-  expect_contains(refusal(replaced(header, ",", ";") + row), "Label, pos.X (um)");
+  expect_contains(message, "[root.columns]");
+  expect_contains(refusal("a b c\n1 2 3\n"), "Label, pos.X (um)");
   expect_contains(refusal("\xB5\x1B[31m\n"), "given:   ??[31m\n");
   expect_contains(refusal(replaced(header, "e1.Y", "e1.X") + row), "column 'e1.X': the column is there twice");
 }

@@ -99,7 +99,7 @@ TEST_F(ListedGrains, AFileWithoutHeaderOrGrainsIsRefused) {
   expect_contains(refusal("x,y,z,r\n0,0,0,0.15\n"), "grains.csv:1: columns are missing: x_mm, y_mm, z_mm, radius_mm");
   expect_contains(refusal("X_MM,y_mm,z_mm,radius_mm\n0,0,0,0.15\n"), "columns are missing: x_mm\n");
   expect_contains(refusal("0,0,0,0.15\n"), "columns are missing");
-  expect_contains(refusal("x_mm;y_mm;z_mm;radius_mm\n0;0;0;0.15\n"), "separated by commas");
+  expect_contains(refusal("x_mm y_mm z_mm radius_mm\n0 0 0 0.15\n"), "separated by commas");
   soil_.grains_file = (folder_ / "none.csv").string();
   expect_contains(test::message_of<InputError>([&] { read_listed_grains(soil_); }), "there is no such file");
 }

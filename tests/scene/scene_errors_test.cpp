@@ -135,6 +135,8 @@ std::vector<Case> cases() {
        "exclude each other"},
       {"tip_axis_without_cells_file", replaced(minimal, "length_mm", "tip_axis = \"+x\"\nlength_mm"), "root.tip_axis",
        "only together with cells_file"},
+      {"columns_without_cells_file", minimal + "\n[root.columns]\nunit = \"um\"\n", "root.columns",
+       "only together with cells_file"},
       {"clamp_of_free_base", replaced(minimal, "length_mm", "base = \"free\"\nclamp_length_mm = 0.1\nlength_mm"),
        "root.clamp_length_mm", "only where base is clamped"},
       {"mature_width_alone", grown + "mature_width_mm = 0.1\n", "growth.mature_width_mm",

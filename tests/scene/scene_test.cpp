@@ -344,15 +344,15 @@ TEST(Scene, EveryKeyIsWrittenUnlessItMeansNothing) {
   const Scene scene = parse(everything);
   const std::string resolved = resolved_toml(language(), scene);
   // the only keys that this scene has no place for
-  const std::set<std::string> left_out = {"root.cells_file",
-                                          "root.tip_axis",
-                                          "pressure.differential_MPa",
-                                          "force.vector_N",
-                                          "numerics.force_tolerance",
-                                          "soil.d_range_mm",
-                                          "soil.grains_file",
-                                          "soil.inertial_number_max",
-                                          "soil.compaction_friction_deg"};
+  const std::set<std::string> left_out = {"root.cells_file",          "root.tip_axis",
+                                          "root.columns.unit",        "root.columns.label",
+                                          "root.columns.position",    "root.columns.e1",
+                                          "root.columns.e2",          "root.columns.semi_axes",
+                                          "root.columns.diameters",   "root.columns.inertia_tensor",
+                                          "root.columns.volume",      "pressure.differential_MPa",
+                                          "force.vector_N",           "numerics.force_tolerance",
+                                          "soil.d_range_mm",          "soil.grains_file",
+                                          "soil.inertial_number_max", "soil.compaction_friction_deg"};
   for (const SectionSpec& section : language().sections()) {
     for (const KeySpec& key : section.keys) {
       const std::string name = section.name + "." + key.name;

@@ -69,9 +69,27 @@ def test_orientation_is_irregular(table: np.ndarray):
     assert 0.2 < np.abs(table[:, 4:7]).mean(axis=0).min() and np.abs(table[:, 4:7]).mean(axis=0).max() < 0.8
 
 
+def test_spread_adds_long_cells_and_specks(project: Path, tmp_path: Path):
+    out = tmp_path / "cells.csv"
+    command = [project / "tools" / "make_cells.py", "--cells", "1000", "--spread", "2000", "--out", out]
+    subprocess.run(command, check=True, capture_output=True)
+    table = np.loadtxt(out, delimiter=",", skiprows=1)
+    semi_axes = table[:, 10:]
+    volume = semi_axes.prod(axis=1)
+    assert volume.max() / volume.min() == pytest.approx(2000.0, rel=1e-2)
+    assert 5.0 < (semi_axes[:, 0] / semi_axes[:, 2]).max() < 15.0
+    assert len(set(table[:, 0])) == len(table)
+
+
 def test_bad_input_is_refused(project: Path, tmp_path: Path):
     out = tmp_path / "cells.csv"
-    for options in (["--cells", "3"], ["--radius-um", "500"], ["--radius-um", "-1"], ["--micro-sign", "x"]):
+    for options in (
+        ["--cells", "3"],
+        ["--radius-um", "500"],
+        ["--radius-um", "-1"],
+        ["--micro-sign", "x"],
+        ["--spread", "1"],
+    ):
         command = [project / "tools" / "make_cells.py", "--out", out, *options]
         done = subprocess.run(command, capture_output=True, text=True)
         assert done.returncode == 2 and options[0] in done.stderr
