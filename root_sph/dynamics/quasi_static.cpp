@@ -416,7 +416,7 @@ class Search {
   };
 
   /// Conjugate gradients on K step = r, preconditioned with M, until the step is as long as allowed in the norm of M. A
-  /// direction without stiffness is followed that far (Steihaug, SIAM J. Numer. Anal. 20, 626, 1983).
+  /// direction without stiffness is followed that far (Steihaug, SIAM Journal on Numerical Analysis 20, 626, 1983).
   NewtonStep newton_step(double longest) {
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(x_.size());
     NewtonStep newton{.step = none, .load = none, .left = r_};

@@ -30,9 +30,9 @@ TEST(Growth, BurstOfDivisions) {
 /// with random phases about as many in every hour.
 TEST(Growth, AsynchronousDivisionsAreSpreadOverTheCycle) {
   const auto spread = [](const std::string& asynchronous, const std::string& scatter) {
-    SceneRun<2> run(growth_case + division,
-                    {"growth.x_g_mm=-0.2", "root.radius_mm=0.03", "division.s_d_per_mm2=0", "numerics.stepper=quasi_static",
-                     "division.asynchronous=" + asynchronous, "division.scatter=" + scatter});
+    SceneRun<2> run(growth_case + division, {"growth.x_g_mm=-0.2", "root.radius_mm=0.03", "division.s_d_per_mm2=0",
+                                             "numerics.stepper=quasi_static", "division.asynchronous=" + asynchronous,
+                                             "division.scatter=" + scatter});
     std::vector<double> divisions;
     auto before = static_cast<double>(run.tissue.cells.total());
     for (int hour = 1; hour <= 8; ++hour) {

@@ -199,7 +199,7 @@ TEST(QuasiStatic, ALoadThatGrowsSlowlyIsWatched) {
 TEST(QuasiStatic, FarBeyondEulersLoadAColumnIsBent) {
   for (const auto& [across, load, grows_for_h] : {std::tuple{4, 3.0, 0.01}, {8, 2.0, 0.01}, {4, 2.0, 0.8}}) {
     expect_within_record(
-        fmt::format("{} across, {} in {} h: tip across over the elastica's - 1", across, load, grows_for_h),
+        fmt::format("{} across under {} times in {} h: tip across over the elastica's - 1", across, load, grows_for_h),
         tip_over_elastica(across, load, grows_for_h, grows_for_h < 0.1 ? 0.1 : 1.0) - 1.0);
   }
 }

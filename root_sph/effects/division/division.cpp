@@ -44,14 +44,14 @@ SectionSpec division_section() {
         "The threshold stays constant beyond this distance from the tip.", "paper 2.3"),
     key(&Di::table, "table", "mm, mm", above(0).up_to(1, microns),
         "[[distance from the tip, threshold], ...] in place of Eq. 6: linear in between, constant before and after.",
-        "docs/decisions/0022").written_when([](const Di& s) { return !s.table.empty(); }),
+        "docs/decisions/0023").written_when([](const Di& s) { return !s.table.empty(); }),
     key(&Di::ends_at_mm, "ends_at_mm", "mm", above(0).up_to(1e3, microns),
-        "No cell divides beyond this distance from the tip.", "docs/decisions/0022"),
+        "No cell divides beyond this distance from the tip.", "docs/decisions/0023"),
     key(&Di::scatter, "scatter", "-", between(0, 0.5),
-        "Standard deviation of the logarithm of the threshold, each cell's own.", "docs/decisions/0022"),
+        "Standard deviation of the logarithm of the threshold, each cell's own.", "docs/decisions/0023"),
     key(&Di::asynchronous, "asynchronous", "-", any_number,
         "Cells of a lattice start somewhere in their cycle, at random: with unequal lengths.",
-        "docs/decisions/0022"),
+        "docs/decisions/0023"),
   }).completed_by(complete_division);
 }
 // clang-format on
