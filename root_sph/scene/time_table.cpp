@@ -15,11 +15,12 @@ double value_at(const Rows& table, double time_h) {
   return table.back()[1];
 }
 
-void check_times(const Rows& table, const std::string& key, const Origins& origins) {
+void check_times(const Rows& table, const std::string& key, const Origins& origins, const std::string& what) {
   for (std::size_t i = 1; i < table.size(); ++i) {
     if (table[i - 1][0] < table[i][0]) continue;
-    origins.fail(key, "the times do not increase", fmt::format("{} after {}", table[i][0], table[i - 1][0]),
-                 "increasing times", "sort the rows, and give each time once");
+    origins.fail(key, fmt::format("the {}s do not increase", what),
+                 fmt::format("{} after {}", table[i][0], table[i - 1][0]), fmt::format("increasing {}s", what),
+                 fmt::format("sort the rows, and give each {} once", what));
   }
 }
 
