@@ -22,7 +22,7 @@ double length_mm(const Scene& scene) {
 template <int Dim>
 AxialRadial closed_form_rates(const Scene& scene, double s_mm, double p_MPa) {
   const auto growth = growth_at(scene, p_MPa);
-  if (!growth || !scene.find<PressureSection>()) return {0.0, 0.0};
+  if (!growth || pressure_rows(scene).empty()) return {0.0, 0.0};
   const double lambda_over_rho0_per_h = softening_ug_mm3_h(*growth, s_mm) / scene.tissue.rho0_ug_mm3;
   const double yield = yield_MPa(*growth, s_mm);
   const Stiffness<Dim> k = stiffness<Dim>(elastic_constants(scene, s_mm, p_MPa));
@@ -79,8 +79,8 @@ double fastest_tip_speed_mm_h(const Scene& scene) {
     length_mm += speed * scene.scene.duration_h / parts;
   }
   // a short peak between two of these times counts as well
-  if (const PressureSection* pressure = scene.find<PressureSection>(); pressure && pressure->table.size() > 1) {
-    for (const auto& [time_h, p_MPa] : pressure->table) {
+  if (const Rows pressure = pressure_rows(scene); pressure.size() > 1) {
+    for (const auto& [time_h, p_MPa] : pressure) {
       if (time_h > scene.scene.duration_h) break;
       consider(closed_form_flow<Dim>(scene, length_mm, p_MPa).tip_speed_mm_h);
     }

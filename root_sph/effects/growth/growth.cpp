@@ -12,6 +12,14 @@
 namespace rootsoil {
 namespace {
 
+void complete_growth(Scene& scene) {
+  check_times(scene.find<GrowthSection>()->yield, "growth.yield_profile", scene.origins, "distance");
+  if (scene.origins.has("growth.yield_profile") && scene.origins.has("response.growth.yield_MPa")) {
+    scene.origins.fail("response.growth.yield_MPa", "growth.yield_profile does not respond", {}, {},
+                       "give one of them");
+  }
+}
+
 // clang-format off
 SectionSpec growth_section() {
   using namespace sections;
@@ -39,9 +47,7 @@ SectionSpec growth_section() {
         "[[distance from the tip, yield stress], ...] in the place of yield_MPa: linear in between, constant beyond.",
         "docs/decisions/0022")
         .only_without("yield_MPa").written_when([](const Gr& s) { return s.yield.size() > 1; }),
-  }).completed_by([](Scene& scene) {
-    check_times(scene.find<Gr>()->yield, "growth.yield_profile", scene.origins, "distance");
-  });
+  }).completed_by(complete_growth);
 }
 // clang-format on
 

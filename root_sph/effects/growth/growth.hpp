@@ -12,7 +12,7 @@ struct GrowthSection {
   double lambda0_ug_mm3_h = 0.0, x_g_mm = 0.0, s_g_mm = 0.0, c_g = 0.0;
   std::optional<double> mature_at_mm;  ///< absent: Eq. 6 to the letter, growth never ends
   double mature_width_mm = 0.1;
-  Rows yield;  ///< (mm from the tip, MPa), distances increasing; none: Eq. 2, anything stretched grows
+  Rows yield{};  ///< (mm from the tip, MPa), distances increasing; none: Eq. 2, anything stretched grows
 };
 
 /// lambda(s), Eq. 6, second: lambda0 ((1 + c_g)/2 + (1 - c_g)/2 z exp(1/2 - z^2/2)), z = (s - x_g)/s_g, ug/(mm^3 h).
