@@ -132,7 +132,7 @@ duration_h = 1
 [root]
 length_mm = 2.6
 radius_mm = 0.5
-cell_size_mm = 0.125
+cell_size_mm = 0.2
 [tissue]
 E_axial_MPa = 1020
 [tissue.anisotropy]

@@ -43,7 +43,7 @@ SectionSpec growth_section() {
     constant_or_table(&Gr::yield, "yield_MPa", "MPa", at_least(0).up_to(10, pascals),
         "Tissue grows in proportion to p less this threshold; none: in proportion to p.", "Lockhart 1965, docs/decisions/0022")
         .responds(),
-    key(&Gr::yield, "yield_profile", "mm, MPa", at_least(0),
+    key(&Gr::yield, "yield_profile", "mm, MPa", at_least(0).up_to(10, pascals),
         "[[distance from the tip, yield stress], ...] in the place of yield_MPa: linear in between, constant beyond.",
         "docs/decisions/0022")
         .only_without("yield_MPa").written_when([](const Gr& s) { return s.yield.size() > 1; }),
