@@ -156,7 +156,7 @@ table = [[0, 0], [0.1, 1]]
 [output]
 every_h = 1
 )",
-                    balanced_steps({fmt::format("force.axial_N={}", force_N)}));
+                    balanced_steps({"numerics.step_h=0.1", fmt::format("force.axial_N={}", force_N)}));
     run.advance_to(0.3);
     const double from_mm = run.solver.axis().tip_mm()[0], from_h = run.tissue.time_h;
     run.advance_to(0.6);
