@@ -342,19 +342,10 @@ TEST(Scene, EveryKeyIsWrittenUnlessItMeansNothing) {
   const Scene scene = parse(everything);
   const std::string resolved = resolved_toml(language(), scene);
   // the only keys that this scene has no place for
-  const std::set<std::string> left_out = {"growth.yield_profile",
-                                          "turgor.turgor_MPa",
-                                          "turgor.soil_MPa",
-                                          "turgor.soil_table",
-                                          "root.cells_file",
-                                          "root.tip_axis",
-                                          "pressure.differential_MPa",
-                                          "force.vector_N",
-                                          "numerics.force_tolerance",
-                                          "soil.d_range_mm",
-                                          "soil.grains_file",
-                                          "soil.inertial_number_max",
-                                          "soil.compaction_friction_deg"};
+  const std::set<std::string> left_out = {
+      "growth.yield_profile", "turgor.soil_MPa",           "turgor.soil_table",        "root.cells_file",
+      "root.tip_axis",        "pressure.differential_MPa", "force.vector_N",           "numerics.force_tolerance",
+      "soil.d_range_mm",      "soil.grains_file",          "soil.inertial_number_max", "soil.compaction_friction_deg"};
   for (const SectionSpec& section : language().sections()) {
     for (const KeySpec& key : section.keys) {
       const std::string name = section.name + "." + key.name;

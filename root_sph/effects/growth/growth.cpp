@@ -14,10 +14,6 @@ namespace {
 
 void complete_growth(Scene& scene) {
   check_times(scene.find<GrowthSection>()->yield, "growth.yield_profile", scene.origins, "distance");
-  if (scene.origins.has("growth.yield_profile") && scene.origins.has("response.growth.yield_MPa")) {
-    scene.origins.fail("response.growth.yield_MPa", "growth.yield_profile does not respond", {}, {},
-                       "give one of them");
-  }
 }
 
 // clang-format off
