@@ -146,7 +146,7 @@ std::vector<Case> cases() {
       {"turgor_empty", minimal + "\n[turgor]\n", "turgor", "neither turgor_MPa nor table"},
       {"turgor_and_pressure", minimal + pressure + "\n[turgor]\nturgor_MPa = 1\n", "turgor", "is given already"},
       {"soil_twice", minimal + "\n[turgor]\nturgor_MPa = 1\nsoil_MPa = 0\nsoil_table = [[0, 0]]\n", "turgor.soil_table",
-       "without soil_MPa"},
+       "exclude each other"},
       {"distances_not_increasing", grown + "yield_profile = [[1, 0.1], [0, 0.2]]\n", "growth.yield_profile",
        "distances do not increase"},
       {"yield_twice", grown + "yield_MPa = 0.1\nyield_profile = [[1, 0.1]]\n", "growth.yield_profile",
