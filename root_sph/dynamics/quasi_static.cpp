@@ -404,7 +404,7 @@ class Search {
     const Eigen::VectorXd here = r_;
     const double push = move / largest_move<Dim>(v, sizes_);
     evaluate(x_ + push * v);
-    const Eigen::VectorXd force = (here - r_) / push;
+    Eigen::VectorXd force = (here - r_) / push;
     r_ = here;
     return force;
   }

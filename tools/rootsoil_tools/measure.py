@@ -180,7 +180,7 @@ def tip_angle(frame: Frame, dimension: int) -> float:
 
 
 def near_points(run: Run, frames: list[int], quantity: str, at_mm: np.ndarray, half_mm: float) -> np.ndarray:
-    """Mean of axial_strain_rate (1/h) or cell_length (um) of the cells within `half_mm` of each point, a row a frame."""
+    """Mean of axial_strain_rate (1/h) or cell_length (um) of cells within `half_mm` of each point, a row a frame."""
     table = np.full((len(frames), len(at_mm)), np.nan)
     for row, index in enumerate(frames):
         frame = run.frame(index)

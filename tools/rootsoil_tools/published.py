@@ -10,11 +10,10 @@ import numpy as np
 
 DATA = Path(__file__).parent.parent / "data"
 SOURCE = "Beemster & Baskin 1998"
-UNITS = {"cell_length": "um", "strain_rate": "%/h", "division_rate": "1/h"}
 
 
 def arabidopsis(quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """Distance from the tip (mm) and cell_length (um), strain_rate (%/h) or division_rate (1/h), as the paper plots them."""
+    """Distance from the tip (mm), and cell_length (um), strain_rate (%/h) or division_rate (1/h)."""
     distance_um, values = np.loadtxt(
         DATA / f"arabidopsis_beemster1998_{quantity}.csv", delimiter=",", skiprows=3, unpack=True
     )
