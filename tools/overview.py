@@ -214,10 +214,12 @@ def draw_growth(run: Run, model: ClosedForm, panels: list) -> list[str]:
             steady_in.append("C")
     if "arabidopsis" in run.name.lower():
         dots = {"color": draw.DATA, "markersize": 2.6, "markeredgewidth": 0, "label": published.SOURCE}
-        for panel, quantity, unit in ((panels[0], "strain_rate", 100.0), (panels[1], "cell_length", 1.0)):
+        for panel, quantity, ours, unit in (
+            (panels[0], "strain_rate", "axial_strain_rate", 100.0),  # %/h
+            (panels[1], "cell_length", "cell_length", 1.0),
+        ):
             at_mm, measured = published.arabidopsis(quantity)
             panel.plot(at_mm, measured / unit, "o", **dots)
-            ours = {"strain_rate": "axial_strain_rate", "cell_length": "cell_length"}[quantity]
             simulated = measure.near_points(run, run.window(measure.WINDOW_H), ours, at_mm, DATA_HALF_WIDTH)
             there = np.isfinite(simulated).any(axis=0)
             if np.count_nonzero(there) > 1:

@@ -71,8 +71,8 @@ Json examine(const Scene& scene) {
   double growth = 1.0;
   if (const DivisionSection* division = scene.find<DivisionSection>()) {
     const double volume_h = theory.tip_speed_mm_h * tissue_volume<Dim>(tissue) / solver.axis().length_mm();
-    const double cell =
-        std::pow(model->initial.cell_size_mm, Dim - 1) * 0.72 * division_threshold_mm(*division, longest_threshold_mm);
+    const double at_mm = std::min(longest_threshold_mm, division->ends_at_mm.value_or(longest_threshold_mm));
+    const double cell = std::pow(model->initial.cell_size_mm, Dim - 1) * 0.72 * division_threshold_mm(*division, at_mm);
     growth += 0.5 * volume_h * scene.scene.duration_h / cell / static_cast<double>(cells);
   }
 

@@ -190,15 +190,12 @@ class Search {
     for (Eigen::Index p = 0; p < places_; ++p) displacement_[free_.cell[p]] = at.segment<Dim>(p * Dim);
   }
 
-  /// r: the forces on the free cells; without their part along a mode that is held.
+  /// r: the forces on the free cells.
   void evaluate(const Eigen::VectorXd& at) {
     put(at);
     problem_.evaluate(displacement_);
     for (Eigen::Index p = 0; p < places_; ++p) r_.segment<Dim>(p * Dim) = tissue_.force[free_.cell[p]];
   }
-
-  /// z = M^-1 r; nothing along a mode that is held.
-  void precondition() { method_.preconditioner->apply(r_, z_); }
 
   void judge() {
     double square = 0.0;
@@ -316,7 +313,7 @@ class Search {
       } else if (rebuilds_ < most_rebuilds && !follow_contact()) {
         return;
       }
-      precondition();
+      method_.preconditioner->apply(r_, z_);
       if (fresh_) ++method_.iterations;
       if (balanced) {
         const double move = largest_move<Dim>(z_, sizes_);
@@ -360,8 +357,9 @@ class Search {
     return sum;
   }
 
-  /// Whether the root is pressed, and its softest mode is to be looked at: with a new matrix, where cells want to move
-  /// on or it was soft, where the thrust has grown, and now and then, for the root gets longer.
+  /// Whether the root is pressed, and its softest mode is to be looked at: with a new matrix, where no balance was
+  /// found or cells want to move on, where it was soft, where the thrust has grown, and now and then, for the root gets
+  /// longer.
   bool may_buckle() {
     const auto& cells = tissue_.cells;
     double section = 0.0;

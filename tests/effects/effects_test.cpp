@@ -17,7 +17,7 @@
 #include "root_sph/effects/midline_damping/midline_damping.hpp"
 #include "root_sph/effects/pressure/pressure.hpp"
 #include "root_sph/effects/probe/probe.hpp"
-#include "root_sph/scene/time_table.hpp"
+#include "root_sph/scene/value_table.hpp"
 #include "tests/support/block.hpp"
 
 namespace rootsoil {

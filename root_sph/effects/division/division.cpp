@@ -14,7 +14,7 @@
 #include "root_sph/dynamics/cell_axes.hpp"
 #include "root_sph/scene/checks.hpp"
 #include "root_sph/scene/schema_keys.hpp"
-#include "root_sph/scene/time_table.hpp"
+#include "root_sph/scene/value_table.hpp"
 
 namespace rootsoil {
 
@@ -216,14 +216,14 @@ void DivisionEffect<Dim>::refuse_runaway(const Tissue<Dim>& tissue, const std::v
     worst = i;
     times = length_mm(i) / at_mm(i);
   }
-  throw UnphysicalError(
-      fmt::format("the tissue divides without end at t = {:.5g} h: {}. Cell {}, {:.3g} mm long and {:.4g} mm from the "
-                  "tip, is {:.3g} "
-                  "times as long as the threshold there, {:.3g} mm (division.l0_mm = {}). Usual causes: l0_mm, "
-                  "s_d_per_mm2 or x_d_mm "
-                  "in other units than cells and root, a growth rate or a duration far too large",
-                  tissue.time_h, trouble, cells.cell_id[worst], length_mm(worst), cells.distance_to_tip[worst], times,
-                  at_mm(worst), division_.l0_mm));
+  throw UnphysicalError(fmt::format(
+      "the tissue divides without end at t = {:.5g} h: {}. Cell {}, {:.3g} mm long and {:.4g} mm from the "
+      "tip, is {:.3g} "
+      "times as long as the threshold there, {:.3g} mm ({}). Usual causes: l0_mm, "
+      "s_d_per_mm2 or x_d_mm "
+      "in other units than cells and root, a growth rate or a duration far too large",
+      tissue.time_h, trouble, cells.cell_id[worst], length_mm(worst), cells.distance_to_tip[worst], times, at_mm(worst),
+      division_.table.empty() ? fmt::format("division.l0_mm = {}", division_.l0_mm) : "division.table"));
 }
 
 EffectSpec division_effect() {

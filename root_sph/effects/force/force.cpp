@@ -9,7 +9,7 @@
 #include "root_sph/core/vec3.hpp"
 #include "root_sph/scene/checks.hpp"
 #include "root_sph/scene/schema_keys.hpp"
-#include "root_sph/scene/time_table.hpp"
+#include "root_sph/scene/value_table.hpp"
 
 namespace rootsoil {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "root_sph/scene/time_table.hpp"
+#include "root_sph/scene/value_table.hpp"
 
 #include <fmt/format.h>
 
