@@ -103,8 +103,8 @@ FrameTable closed_form_table(const Scene& scene, const Solver<Dim>& solver) {
   };
   add("distance_to_tip", "mm", "from the tip along the root", s_mm);
   add("pressure_differential", "MPa", "the same all along the root", along([&](double) { return p_MPa; }));
-  add("arrest_stress", "MPa", "axial compression that stops growth, the same all along the root",
-      along([&](double) { return arrest_stress_per_pressure<Dim>(scene) * p_MPa; }));
+  add("arrest_stress", "MPa", "axial compression that stops growth",
+      along([&](double s) { return arrest_stress_MPa<Dim>(scene, s, p_MPa); }));
   add("radial_modulus", "MPa", "E_R (Eq. 6, 7)",
       along([&](double s) { return elastic_constants(scene, s, p_MPa).E_radial_MPa; }));
   add("axial_strain", "1", "elastic, logarithmic (Eq. 8)", along([&](double s) { return strain(s).axial; }));
@@ -114,6 +114,9 @@ FrameTable closed_form_table(const Scene& scene, const Solver<Dim>& solver) {
   const auto rates = [&](double s) { return closed_form_rates<Dim>(scene, s, p_MPa); };
   Carried carried = carry<Dim>(scene, s_mm, 0.25 * zone_mm, p_MPa);
   add("softening", "ug/(mm^3 h)", "lambda (Eq. 6, 7)", along([&](double s) { return softening_ug_mm3_h(*growth, s); }));
+  if (!growth->yield.empty()) {
+    add("yield_stress", "MPa", "beyond which tissue grows", along([&](double s) { return yield_MPa(*growth, s); }));
+  }
   add("axial_strain_rate", "1/h", "of growth", along([&](double s) { return rates(s).axial; }));
   add("radial_strain_rate", "1/h", "of growth", along([&](double s) { return rates(s).radial; }));
   if (const DivisionSection* division = scene.find<DivisionSection>()) {

@@ -15,7 +15,7 @@ Mat<Dim> nominal_force_of(const Mat<Dim>& frame, const Voigt<Dim>& stress, doubl
   return volume * total * inverse_deformation.transpose();
 }
 
-template <int Dim, class Law, bool Varying, bool Growing, bool Advancing>
+template <int Dim, class Law, bool Varying, bool Growing, bool Yielding, bool Advancing>
 void update_material(Tissue<Dim>& tissue, double dt_h) {
   auto& cells = tissue.cells;
   const Material<Dim>& material = tissue.material;
@@ -31,9 +31,10 @@ void update_material(Tissue<Dim>& tissue, double dt_h) {
     const double volume = cells.volume[i] * (after.determinant() / before.determinant());
     const Stiffness<Dim>& k = Varying ? (*material.stiffness)[i] : material.uniform;
     const double lambda = Growing ? (*material.softening)[i] : 0.0;
+    const double yield_MPa = Yielding ? (*material.yield)[i] : 0.0;
     typename Law::State state(cells.stress[i], cells.mass[i]);
     for (std::size_t c = 0; c < Law::columns.size(); ++c) state.columns[c] = (*material.law_columns[c])[i];
-    Law::step({k, strain, volume, dt_h, lambda, material.rho0_ug_mm3}, state);
+    Law::step({k, strain, volume, dt_h, lambda, material.rho0_ug_mm3, yield_MPa}, state);
 
     tissue.nominal_force[i] = nominal_force_of<Dim>(frame, state.stress, volume, after.inverse(), tissue.pressure_MPa);
     tissue.force[i].setZero();
@@ -85,8 +86,10 @@ MaterialLoop<Dim> choose_material_loop(const Material<Dim>& material, MaterialSt
   return visit_law<Dim>(material.law, [&]<class Law>(Law) {
     return choose(material.stiffness != nullptr, [&](auto varying) {
       return choose(material.softening != nullptr, [&](auto growing) {
-        return choose(step == MaterialStep::advance, [&](auto advancing) -> MaterialLoop<Dim> {
-          return update_material<Dim, Law, varying, growing, advancing>;
+        return choose(material.yield != nullptr, [&](auto yielding) {
+          return choose(step == MaterialStep::advance, [&](auto advancing) -> MaterialLoop<Dim> {
+            return update_material < Dim, Law, varying, growing, growing && yielding, advancing > ;
+          });
         });
       });
     });

@@ -34,6 +34,7 @@ struct Material {
   Stiffness<Dim> uniform = Stiffness<Dim>::Zero();   ///< where stiffness does not vary
   Field<Dim, Stiffness<Dim>>* stiffness = nullptr;   ///< where it does
   Field<Dim, double>* softening = nullptr;           ///< lambda, ug/(mm^3 h); growth
+  Field<Dim, double>* yield = nullptr;               ///< MPa; growth with a threshold
   std::vector<Field<Dim, Voigt<Dim>>*> law_columns;  ///< what the law carries besides the stress
 
   const Stiffness<Dim>& stiffness_of(std::size_t cell) const { return stiffness ? (*stiffness)[cell] : uniform; }

@@ -19,8 +19,9 @@ namespace rootsoil {
 struct FreeGrowth {
   /// At a distance from the tip, under the pressure differential at the start.
   std::function<double(double s_mm)> axial_rate_per_h;
-  double arrest_stress_per_pressure = 1.0;  ///< 1 - nu_A in 2D, 1 - 2 nu_A in 3D
-  double fastest_tip_speed_mm_h = 0.0;      ///< that the root can reach in the scene
+  /// Axial compression that stops growth at a pressure differential.
+  std::function<double(double p_MPa)> arrest_stress_MPa = [](double p_MPa) { return p_MPa; };
+  double fastest_tip_speed_mm_h = 0.0;  ///< that the root can reach in the scene
 };
 
 /// Makes the soil of a scene, told about the root. The program hands it in, since root_sph knows no soil.

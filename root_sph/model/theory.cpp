@@ -9,14 +9,25 @@
 
 namespace rootsoil {
 
+namespace {
+
+/// At the start.
+double length_mm(const Scene& scene) {
+  constexpr double measured_length_mm = 0.5;  // of cells from a file, before they are read
+  return scene.root.is_lattice() ? scene.root.length_mm : measured_length_mm;
+}
+
+}  // namespace
+
 template <int Dim>
 AxialRadial closed_form_rates(const Scene& scene, double s_mm, double p_MPa) {
   const auto growth = growth_at(scene, p_MPa);
-  if (!growth || !scene.find<PressureSection>()) return {0.0, 0.0};
+  if (!growth || pressure_rows(scene).empty()) return {0.0, 0.0};
   const double lambda_over_rho0_per_h = softening_ug_mm3_h(*growth, s_mm) / scene.tissue.rho0_ug_mm3;
+  const double yield = yield_MPa(*growth, s_mm);
   const Stiffness<Dim> k = stiffness<Dim>(elastic_constants(scene, s_mm, p_MPa));
   return visit_law<Dim>(scene.tissue.law,
-                        [&]<class Law>(Law) { return Law::growth_rate(k, p_MPa, lambda_over_rho0_per_h); });
+                        [&]<class Law>(Law) { return Law::growth_rate(k, p_MPa, lambda_over_rho0_per_h, yield); });
 }
 
 template <int Dim>
@@ -32,10 +43,30 @@ ClosedFormFlow closed_form_flow(const Scene& scene, double length_mm, double p_M
 }
 
 template <int Dim>
+double arrest_stress_MPa(const Scene& scene, double s_mm, double p_MPa) {
+  const auto growth = growth_at(scene, p_MPa);
+  const double beyond_MPa = std::max(0.0, p_MPa - (growth ? yield_MPa(*growth, s_mm) : 0.0));
+  return (1.0 - (Dim - 1) * scene.tissue.nu_axial) * beyond_MPa;
+}
+
+template <int Dim>
+double arrest_stress_MPa(const Scene& scene, double p_MPa) {
+  const auto growth = growth_at(scene, p_MPa);
+  if (!growth || growth->yield.size() < 2) return arrest_stress_MPa<Dim>(scene, 0.0, p_MPa);
+  constexpr int parts = 200;
+  double sum = 0.0, weight = 0.0;
+  for (int k = 0; k < parts; ++k) {
+    const double s_mm = (k + 0.5) * length_mm(scene) / parts, lambda = softening_ug_mm3_h(*growth, s_mm);
+    sum += lambda * arrest_stress_MPa<Dim>(scene, s_mm, p_MPa);
+    weight += lambda;
+  }
+  return weight > 0.0 ? sum / weight : 0.0;
+}
+
+template <int Dim>
 double fastest_tip_speed_mm_h(const Scene& scene) {
   constexpr int parts = 50;
-  constexpr double measured_length_mm = 0.5;  // of cells from a file, before they are read
-  double length_mm = scene.root.is_lattice() ? scene.root.length_mm : measured_length_mm;
+  double length_mm = rootsoil::length_mm(scene);
   double fastest = 0.0;
   const auto consider = [&](double speed) {
     constexpr double rounding = 1e-3;  // of the sum over a longer root
@@ -48,8 +79,8 @@ double fastest_tip_speed_mm_h(const Scene& scene) {
     length_mm += speed * scene.scene.duration_h / parts;
   }
   // a short peak between two of these times counts as well
-  if (const PressureSection* pressure = scene.find<PressureSection>(); pressure && pressure->table.size() > 1) {
-    for (const auto& [time_h, p_MPa] : pressure->table) {
+  if (const Rows pressure = pressure_rows(scene); pressure.size() > 1) {
+    for (const auto& [time_h, p_MPa] : pressure) {
       if (time_h > scene.scene.duration_h) break;
       consider(closed_form_flow<Dim>(scene, length_mm, p_MPa).tip_speed_mm_h);
     }
@@ -61,7 +92,7 @@ template <int Dim>
 FreeGrowth free_growth(const Scene& scene) {
   return {.axial_rate_per_h =
               [scene](double s_mm) { return closed_form_rates<Dim>(scene, s_mm, pressure_MPa(scene, 0.0)).axial; },
-          .arrest_stress_per_pressure = arrest_stress_per_pressure<Dim>(scene),
+          .arrest_stress_MPa = [scene](double p_MPa) { return arrest_stress_MPa<Dim>(scene, p_MPa); },
           .fastest_tip_speed_mm_h = fastest_tip_speed_mm_h<Dim>(scene)};
 }
 
@@ -69,6 +100,10 @@ template AxialRadial closed_form_rates<2>(const Scene&, double, double);
 template AxialRadial closed_form_rates<3>(const Scene&, double, double);
 template ClosedFormFlow closed_form_flow<2>(const Scene&, double, double);
 template ClosedFormFlow closed_form_flow<3>(const Scene&, double, double);
+template double arrest_stress_MPa<2>(const Scene&, double, double);
+template double arrest_stress_MPa<3>(const Scene&, double, double);
+template double arrest_stress_MPa<2>(const Scene&, double);
+template double arrest_stress_MPa<3>(const Scene&, double);
 template double fastest_tip_speed_mm_h<2>(const Scene&);
 template double fastest_tip_speed_mm_h<3>(const Scene&);
 template FreeGrowth free_growth<2>(const Scene&);

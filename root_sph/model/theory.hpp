@@ -25,11 +25,14 @@ ClosedFormFlow closed_form_flow(const Scene& scene, double length_mm, double p_M
 template <int Dim>
 double fastest_tip_speed_mm_h(const Scene& scene);
 
-/// Axial compression that stops growth over the pressure differential: 1 - nu_A, in 3D 1 - 2 nu_A.
+/// Axial compression that stops growth at a distance from the tip: (p - Y)(1 - nu_A), in 3D (p - Y)(1 - 2 nu_A), MPa.
 template <int Dim>
-double arrest_stress_per_pressure(const Scene& scene) {
-  return 1.0 - (Dim - 1) * scene.tissue.nu_axial;
-}
+double arrest_stress_MPa(const Scene& scene, double s_mm, double p_MPa);
+
+/// And that stops the tip of a root of this length: the mean of the above, weighted with lambda. Where Y varies along
+/// the root, tissue beyond it then shortens as fast as other tissue still grows.
+template <int Dim>
+double arrest_stress_MPa(const Scene& scene, double p_MPa);
 
 template <int Dim>
 FreeGrowth free_growth(const Scene& scene);

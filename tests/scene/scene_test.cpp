@@ -81,6 +81,7 @@ extrapolate = false
 p_MPa = [0.987, 0.625]
 lambda0_ug_mm3_h = [4e5, 3e5]
 s_g_mm = [0.37, 0.3]
+yield_MPa = [0.2, 0.1]
 
 [response.anisotropy]
 p_MPa = [0.825, 0.5]
@@ -344,15 +345,27 @@ TEST(Scene, EveryKeyIsWrittenUnlessItMeansNothing) {
   const Scene scene = parse(everything);
   const std::string resolved = resolved_toml(language(), scene);
   // the only keys that this scene has no place for
-  const std::set<std::string> left_out = {"root.cells_file",          "root.tip_axis",
-                                          "root.columns.unit",        "root.columns.label",
-                                          "root.columns.position",    "root.columns.e1",
-                                          "root.columns.e2",          "root.columns.semi_axes",
-                                          "root.columns.diameters",   "root.columns.inertia_tensor",
-                                          "root.columns.volume",      "pressure.differential_MPa",
-                                          "force.vector_N",           "numerics.force_tolerance",
-                                          "soil.d_range_mm",          "soil.grains_file",
-                                          "soil.inertial_number_max", "soil.compaction_friction_deg"};
+  const std::set<std::string> left_out = {"growth.yield_profile",
+                                          "turgor.soil_MPa",
+                                          "turgor.soil_table",
+                                          "root.cells_file",
+                                          "root.tip_axis",
+                                          "root.columns.unit",
+                                          "root.columns.label",
+                                          "root.columns.position",
+                                          "root.columns.e1",
+                                          "root.columns.e2",
+                                          "root.columns.semi_axes",
+                                          "root.columns.diameters",
+                                          "root.columns.inertia_tensor",
+                                          "root.columns.volume",
+                                          "pressure.differential_MPa",
+                                          "force.vector_N",
+                                          "numerics.force_tolerance",
+                                          "soil.d_range_mm",
+                                          "soil.grains_file",
+                                          "soil.inertial_number_max",
+                                          "soil.compaction_friction_deg"};
   for (const SectionSpec& section : language().sections()) {
     for (const KeySpec& key : section.keys) {
       const std::string name = section.name + "." + key.name;
@@ -385,6 +398,22 @@ TEST(Scene, CellsFileStartsFromTheScenesFolder) {
   EXPECT_EQ(s.root.cells_file, (folder / "cells.csv").string());
   EXPECT_EQ(parse(resolved_toml(language(), s)).root.cells_file, s.root.cells_file);  // from any other folder
   std::filesystem::remove_all(folder);
+}
+
+/// p = turgor less the soil's pressure, at any time; a table of either gives one of both.
+TEST(Scene, TurgorLessTheSoilIsThePressure) {
+  const std::string turgor = minimal + "\n[turgor]\nturgor_MPa = 0.75\n";
+  EXPECT_EQ(parse(turgor).facts.pressure_MPa, (std::array{0.75, 0.75}));
+  EXPECT_EQ(pressure_rows(parse(turgor)), pressure_rows(parse(minimal + "\n[pressure]\ndifferential_MPa = 0.75\n")));
+  EXPECT_EQ(pressure_MPa(parse(turgor + "soil_MPa = 0.25\n"), 3.0), 0.5);
+  const Scene both =
+      parse(minimal + "\n[turgor]\ntable = [[1, 0.5], [3, 1]]\nsoil_table = [[0, 0], [2, 0.25], [4, 0.5]]\n");
+  for (const auto& [time_h, p] : Rows{{0.0, 0.5}, {1.0, 0.375}, {2.0, 0.5}, {2.5, 0.5625}, {3.0, 0.625}, {9.0, 0.5}}) {
+    EXPECT_DOUBLE_EQ(pressure_MPa(both, time_h), p) << time_h;
+  }
+  EXPECT_EQ(both.facts.pressure_MPa, (std::array{0.375, 0.625}));
+  const std::string once = resolved_toml(language(), both);
+  EXPECT_EQ(resolved_toml(language(), parse(once)), once);
 }
 
 TEST(Scene, OverridesReplaceAddAndReachListElements) {

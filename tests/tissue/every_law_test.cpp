@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "root_sph/tissue/hyperbolicity.hpp"
 #include "root_sph/tissue/laws/laws.hpp"
@@ -49,9 +51,9 @@ struct Cell {
     state.mass *= Law::density_ratio(k, p_MPa);
   }
 
-  void step(const Voigt<dim>& strain, double dt_h = 0.0, double lambda = 0.0) {
+  void step(const Voigt<dim>& strain, double dt_h = 0.0, double lambda = 0.0, double yield_MPa = 0.0) {
     V *= std::exp(strain.template head<dim>().sum());
-    Law::step({k, strain, V, dt_h, lambda, rho0}, state);
+    Law::step({k, strain, V, dt_h, lambda, rho0, yield_MPa}, state);
   }
 };
 
@@ -113,7 +115,9 @@ TYPED_TEST(TheLaw, IsStretchedToPressureAndDensityByItsEquilibriumStrain) {
 TYPED_TEST(TheLaw, GrowsUnderConstantPressureAtTheRateOfTheClosedForm) {
   constexpr int dim = TypeParam::dimension;
   constexpr double dt_h = 1e-7, lambda_over_rho0 = 400.0;
-  for (const double p : pressures_MPa) {
+  std::vector<std::pair<double, double>> pressures_and_yields{{0.7, 0.3}, {2.0, 1.9}, {0.3, 0.7}};
+  for (const double p : pressures_MPa) pressures_and_yields.emplace_back(p, 0.0);
+  for (const auto& [p, yield] : pressures_and_yields) {
     Cell<TypeParam> cell(15.0, p);
     const VoigtMat<dim> softness = TypeParam::tangent(cell.k).inverse();
     Voigt<dim> rate;
@@ -122,13 +126,13 @@ TYPED_TEST(TheLaw, GrowsUnderConstantPressureAtTheRateOfTheClosedForm) {
       Cell<TypeParam> after = cell;
       for (int iteration = 0; iteration < 20; ++iteration) {
         after = cell;
-        after.step(strain, dt_h, lambda_over_rho0 * rho0);
+        after.step(strain, dt_h, lambda_over_rho0 * rho0, yield);
         strain += softness * (isotropic<dim>(p) - after.state.stress);
       }
       cell = after;
       rate = strain / dt_h;
     }
-    const Voigt<dim> closed_form = as_strain<dim>(TypeParam::growth_rate(cell.k, p, lambda_over_rho0));
+    const Voigt<dim> closed_form = as_strain<dim>(TypeParam::growth_rate(cell.k, p, lambda_over_rho0, yield));
     // the mass source of a step is explicit in pressure_deviator, which leaves dt lambda/rho0 = 4.0e-5; without growth
     // the rounding of a stress, over E and dt, leaves 2.1e-9 /h
     EXPECT_LT((rate - closed_form).norm(), 4.2e-5 * closed_form.norm() + 4e-9);

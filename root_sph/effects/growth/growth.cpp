@@ -7,9 +7,14 @@
 
 #include "root_sph/scene/response.hpp"
 #include "root_sph/scene/schema_keys.hpp"
+#include "root_sph/scene/value_table.hpp"
 
 namespace rootsoil {
 namespace {
+
+void complete_growth(Scene& scene) {
+  check_increasing(scene.find<GrowthSection>()->yield, "growth.yield_profile", "distances", scene.origins);
+}
 
 // clang-format off
 SectionSpec growth_section() {
@@ -31,7 +36,14 @@ SectionSpec growth_section() {
         "Growth ends at this distance from the tip; none: Eq. 6 to the letter.", "docs/physics.md 4"),
     key(&Gr::mature_width_mm, "mature_width_mm", "mm", above(0).up_to(1e3, microns), "Width of that end.", "docs/physics.md 4")
         .only_with("mature_at_mm"),
-  });
+    constant_or_table(&Gr::yield, "yield_MPa", "MPa", at_least(0).up_to(10, pascals),
+        "Tissue grows in proportion to p less this threshold; none: in proportion to p.", "Lockhart 1965, docs/decisions/0024")
+        .responds(),
+    key(&Gr::yield, "yield_profile", "mm, MPa", at_least(0).up_to(10, pascals),
+        "[[distance from the tip, yield stress], ...] in the place of yield_MPa: linear in between, constant beyond.",
+        "docs/decisions/0024")
+        .only_without("yield_MPa").written_when([](const Gr& s) { return s.yield.size() > 1; }),
+  }).completed_by(complete_growth);
 }
 // clang-format on
 
@@ -53,21 +65,24 @@ double softening_ug_mm3_h(const GrowthSection& g, double s_mm) {
   return lambda * t * t * (3.0 - 2.0 * t);
 }
 
-SofteningIntegral::SofteningIntegral(const GrowthSection& growth, double length_mm, double step_mm) {
-  const auto softening = [&](double s) { return softening_ug_mm3_h(growth, s); };
+double yield_MPa(const GrowthSection& growth, double s_mm) {
+  return growth.yield.empty() ? 0.0 : value_at(growth.yield, s_mm);
+}
+
+IntegralFromTip::IntegralFromTip(const std::function<double(double)>& function, double length_mm, double step_mm) {
   const auto intervals = static_cast<std::size_t>(std::max(1.0, std::ceil(length_mm / step_mm)));
   step_mm_ = length_mm / static_cast<double>(intervals);
-  slope_.push_back(softening(0.0));
+  slope_.push_back(function(0.0));
   value_.push_back(0.0);
   for (std::size_t k = 0; k < intervals; ++k) {
     const double from = static_cast<double>(k) * step_mm_;
-    slope_.push_back(softening(from + step_mm_));
-    const double mean = (slope_[k] + 4.0 * softening(from + 0.5 * step_mm_) + slope_[k + 1]) / 6.0;
+    slope_.push_back(function(from + step_mm_));
+    const double mean = (slope_[k] + 4.0 * function(from + 0.5 * step_mm_) + slope_[k + 1]) / 6.0;
     value_.push_back(value_[k] + step_mm_ * mean);
   }
 }
 
-double SofteningIntegral::operator()(double s_mm) const {
+double IntegralFromTip::operator()(double s_mm) const {
   const double z = s_mm / step_mm_;
   if (z <= 0.0) return 0.0;
   const std::size_t intervals = value_.size() - 1;
@@ -85,42 +100,69 @@ std::optional<GrowthSection> growth_at(const Scene& scene, double p_MPa) {
 
 template <int Dim>
 GrowthEffect<Dim>::GrowthEffect(Solver<Dim>& solver, const Scene& scene)
-    : softening_(solver.tissue().cells.template declare<double>(
+    : solver_(solver),
+      softening_(solver.tissue().cells.template declare<double>(
           {"softening", "ug/(mm^3 h)", "lambda at the cell, Eq. 6", Storage::scratch},
           on_division::recomputed<Dim, double>)) {
-  solver.tissue().material.softening = &softening_;
-  solver.hooks().operators.emplace_back("growth", [this, &solver, scene](Tissue<Dim>& t) {
-    const RootAxis<Dim>& axis = solver.axis();
-    const auto& cells = t.cells;
-    // held cells do not flow: the integral ends where they begin
-    const SofteningIntegral integral(*growth_at(scene, t.pressure_MPa), axis.moving_length_mm(), 0.25 * axis.bin_mm());
-    std::vector<double> flow(cells.size());
-#pragma omp parallel for schedule(static)
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      flow[i] = cells.clamped[i] ? integral(axis.moving_length_mm())
-                                 : integral(solver.mid_window_distance(cells.distance_to_tip[i]));
-      softening_[i] = 0.0;
+  Tissue<Dim>& tissue = solver.tissue();
+  tissue.material.softening = &softening_;
+  if (!growth_at(scene, tissue.pressure_MPa)->yield.empty()) {
+    yield_ = &tissue.cells.template declare<double>(
+        {"yield_stress", "MPa", "beyond which the cell grows", Storage::scratch}, on_division::recomputed<Dim, double>);
+    tissue.material.yield = yield_;
+  }
+  solver.hooks().operators.emplace_back("growth", [this, scene](Tissue<Dim>& t) {
+    const GrowthSection growth = *growth_at(scene, t.pressure_MPa);
+    const auto softening = [&](double s) { return softening_ug_mm3_h(growth, s); };
+    measure(t, softening, softening_);
+    if (!yield_) return;
+    Field<Dim, double>& yield = *yield_;
+    if (growth.yield.size() > 1) {
+      measure(
+          t, [&](double s) { return softening(s) * yield_MPa(growth, s); }, yield);
     }
-    for_each_block(t.pairs, [&](const PairBlock& block) {
-      for (std::int64_t k = block.first_pair; k < block.last_pair; ++k) {
-        const auto [i, j] = t.pairs.pairs[k];
-        const double difference = flow[i] - flow[j];  // the axis points to the tip, against s
-        softening_[i] += difference * t.gradients[k].at_i.dot(cells.frame[i].col(0));
-        softening_[j] -= difference * t.gradients[k].at_j.dot(cells.frame[j].col(0));
-      }
-    });
 #pragma omp parallel for schedule(static)
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      // the operators act on the window's start, where lengths are shorter than in its middle
-      const double stretch = 1.0 + 0.5 * solver.window_h() * axis.strain_rate_per_h(cells.distance_to_tip[i]);
-      softening_[i] = cells.clamped[i] ? 0.0 : std::max(0.0, softening_[i] / stretch);
+    for (std::size_t i = 0; i < t.cells.size(); ++i) {
+      const bool measured = growth.yield.size() > 1 && softening_[i] > 0.0;
+      yield[i] = measured ? yield[i] / softening_[i] : yield_MPa(growth, t.cells.distance_to_tip[i]);
     }
   });
 }
 
 template <int Dim>
+void GrowthEffect<Dim>::measure(const Tissue<Dim>& t, const std::function<double(double)>& function,
+                                Field<Dim, double>& gradient) const {
+  const RootAxis<Dim>& axis = solver_.axis();
+  const auto& cells = t.cells;
+  // held cells do not flow: the integral ends where they begin
+  const IntegralFromTip integral(function, axis.moving_length_mm(), 0.25 * axis.bin_mm());
+  std::vector<double> flow(cells.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    flow[i] = cells.clamped[i] ? integral(axis.moving_length_mm())
+                               : integral(solver_.mid_window_distance(cells.distance_to_tip[i]));
+    gradient[i] = 0.0;
+  }
+  for_each_block(t.pairs, [&](const PairBlock& block) {
+    for (std::int64_t k = block.first_pair; k < block.last_pair; ++k) {
+      const auto [i, j] = t.pairs.pairs[k];
+      const double difference = flow[i] - flow[j];  // the axis points to the tip, against s
+      gradient[i] += difference * t.gradients[k].at_i.dot(cells.frame[i].col(0));
+      gradient[j] -= difference * t.gradients[k].at_j.dot(cells.frame[j].col(0));
+    }
+  });
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    // the operators act on the window's start, where lengths are shorter than in its middle
+    const double stretch = 1.0 + 0.5 * solver_.window_h() * axis.strain_rate_per_h(cells.distance_to_tip[i]);
+    gradient[i] = cells.clamped[i] ? 0.0 : std::max(0.0, gradient[i] / stretch);
+  }
+}
+
+template <int Dim>
 void GrowthEffect<Dim>::add_columns(const Tissue<Dim>&, std::vector<FrameColumn>& columns) const {
   columns.push_back({"softening", "ug/(mm^3 h)", "softening coefficient lambda", 1, softening_.values()});
+  if (yield_) columns.push_back({"yield_stress", "MPa", "beyond which the cell grows", 1, yield_->values()});
 }
 
 EffectSpec growth_effect() {

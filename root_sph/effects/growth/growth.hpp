@@ -2,6 +2,8 @@
 // Growth: a source of mass where the tissue is soft and stretched (Eq. 1, 2 and 6).
 #pragma once
 
+#include <functional>
+
 #include "root_sph/effects/effect_spec.hpp"
 
 namespace rootsoil {
@@ -10,6 +12,7 @@ struct GrowthSection {
   double lambda0_ug_mm3_h = 0.0, x_g_mm = 0.0, s_g_mm = 0.0, c_g = 0.0;
   std::optional<double> mature_at_mm;  ///< absent: Eq. 6 to the letter, growth never ends
   double mature_width_mm = 0.1;
+  Rows yield{};  ///< (mm from the tip, MPa), distances increasing; none: Eq. 2, anything stretched grows
 };
 
 /// lambda(s), Eq. 6, second: lambda0 ((1 + c_g)/2 + (1 - c_g)/2 z exp(1/2 - z^2/2)), z = (s - x_g)/s_g, ug/(mm^3 h).
@@ -18,11 +21,14 @@ struct GrowthSection {
 /// cubic between mature_at - width/2 and mature_at + width/2.
 double softening_ug_mm3_h(const GrowthSection& growth, double s_mm);
 
-/// Integral of lambda(s) from the tip, ug/(mm^2 h): a table with Simpson's rule between the nodes and cubic Hermite
-/// interpolation, so fourth order in the step. Constant below 0 and beyond `length_mm`.
-class SofteningIntegral {
+/// Stress beyond which the tissue grows: linear between the rows and constant beyond them, MPa; 0 where there are none.
+double yield_MPa(const GrowthSection& growth, double s_mm);
+
+/// Integral from the tip of a function of s, such as lambda, ug/(mm^2 h): a table with Simpson's rule between the nodes
+/// and cubic Hermite interpolation, so fourth order in the step. Constant below 0 and beyond `length_mm`.
+class IntegralFromTip {
  public:
-  SofteningIntegral(const GrowthSection& growth, double length_mm, double step_mm);
+  IntegralFromTip(const std::function<double(double s_mm)>& function, double length_mm, double step_mm);
   double operator()(double s_mm) const;
 
  private:
@@ -37,6 +43,8 @@ std::optional<GrowthSection> growth_at(const Scene& scene, double p_MPa);
 /// its strain rate: lambda_i = -axis . sum_j (Lambda_j - Lambda_i) g_ij. A cell as long as the profile is steep cannot
 /// follow its value at one point: the rate that its neighbours allow is an average, and the difference would stay
 /// behind as stress where the growth zone ends (docs/decisions/0010). Equal to lambda(s) to second order.
+///
+/// Its yield stress is lambda Y over lambda, both measured so: the flow is the integral of lambda (p - Y).
 template <int Dim>
 class GrowthEffect final : public Effect<Dim> {
  public:
@@ -44,7 +52,13 @@ class GrowthEffect final : public Effect<Dim> {
   void add_columns(const Tissue<Dim>& tissue, std::vector<FrameColumn>& columns) const override;
 
  private:
+  /// The gradient along the root of a function's integral, with the operators, at every cell; 0 where held.
+  void measure(const Tissue<Dim>& tissue, const std::function<double(double s_mm)>& function,
+               Field<Dim, double>& gradient) const;
+
+  Solver<Dim>& solver_;
   Field<Dim, double>& softening_;
+  Field<Dim, double>* yield_ = nullptr;  ///< with a threshold only
 };
 
 EffectSpec growth_effect();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Uniform pressure differential (the paper's Eq. 5): turgor minus the perceived resistance of the soil.
+// Uniform pressure differential (the paper's Eq. 5): turgor minus the perceived resistance of the soil, given as one
+// number ([pressure]) or apart ([turgor]).
 #pragma once
 
 #include "root_sph/effects/effect_spec.hpp"
@@ -10,6 +11,15 @@ namespace rootsoil {
 struct PressureSection {
   Rows table;  ///< (time_h, differential_MPa), times increasing
 };
+
+/// Tables as above.
+struct TurgorSection {
+  Rows turgor;                         ///< (time_h, MPa)
+  Rows soil = {std::array{0.0, 0.0}};  ///< (time_h, MPa) that the soil takes
+};
+
+/// Of a scene over time, whichever section it has: (time_h, MPa); empty where there is no pressure.
+Rows pressure_rows(const Scene& scene);
 
 /// Of a scene at a time, MPa; 0 where it has no pressure.
 double pressure_MPa(const Scene& scene, double time_h);

@@ -11,9 +11,9 @@ void complete_response(Scene& scene) {
   if (scene.responses.empty()) {
     scene.origins.fail("response", "nothing responds", {}, {}, "add [response.growth] or [response.anisotropy]");
   }
-  if (!scene.origins.has("pressure")) {
+  if (!scene.origins.has("pressure") && !scene.origins.has("turgor")) {
     scene.origins.fail("response", "the response follows the pressure differential, and there is none", {}, {},
-                       "add [pressure]");
+                       "add [pressure] or [turgor]");
   }
 }
 

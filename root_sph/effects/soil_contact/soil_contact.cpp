@@ -135,7 +135,7 @@ RootSize SoilContactEffect<Dim>::root_size() const {
   const RootAxis<Dim>& axis = solver_.axis();
   const double section = mean_section<Dim>(solver_.tissue(), axis);
   return {axis.length_mm(), axis.bin_mm(),
-          solver_.tissue().pressure_MPa * parameters_.free_growth.arrest_stress_per_pressure * section};
+          parameters_.free_growth.arrest_stress_MPa(solver_.tissue().pressure_MPa) * section};
 }
 
 template <int Dim>

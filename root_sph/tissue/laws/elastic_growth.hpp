@@ -8,15 +8,17 @@
 
 namespace rootsoil {
 
-/// d sigma/dt = C : (D - D_g), D_g = phi (lambda/rho0) S : sigma; dm/dt = m tr(D_g).
+/// d sigma/dt = C : (D - D_g), D_g = (lambda/rho0) S : (sigma - b 1), b = min(Y, pi), pi = K tr(S:sigma);
+/// dm/dt = m tr(D_g) = m (lambda/rho0) (rho0/rho - 1 - Y/K)+.
 ///
-/// phi = 1 where tissue is in tension, 0 where tr(S:sigma) <= 0. In between, where tr(S:sigma) is less than a tenth of
-/// the sum of the elastic strains' magnitudes, it rises linearly: if it jumped, so would the stress that a step leaves
-/// in a cell between tension and compression, and there would be no balance (docs/decisions/0021).
+/// Eq. 2 with the direction of growth made explicit and with a threshold Y: the growth strain follows the elastic
+/// strain beyond that of Y 1, so that an isotropic tension p grows the tissue along S:1, the anisotropy that Eq. 1, 3
+/// and 4 produce, at a rate in proportion to p - Y (Lockhart, Ortega).
 ///
-/// Eq. 2 with the direction of growth made explicit: the growth strain follows the elastic strain, so that an
-/// isotropic tension p grows the tissue along S:1, the anisotropy that Eq. 1, 3 and 4 produce. It also relaxes
-/// deviatoric stress in the growth zone.
+/// pi is the isotropic stress that holds the cell's volume. Where it is below Y nothing grows, as Eq. 2 says, but shape
+/// flows as it does above: a soft wall yields in shear under any pressure, and a cell keeps its water. The rate is
+/// continuous there, and what is dissipated, (sigma - b 1):S:(sigma - b 1) and what lifts pi above Y > 0, is never
+/// negative (docs/decisions/0024).
 template <int Dim>
 struct ElasticGrowth {
   static constexpr int dimension = Dim;
@@ -26,19 +28,20 @@ struct ElasticGrowth {
   static constexpr bool always_hyperbolic = true;  // C is symmetric and positive
   static constexpr std::array<LawColumn, 0> columns{};
   using State = LawState<Dim, columns.size()>;
-  static constexpr double full_from = 0.1;  ///< tr(S:sigma) over the sum of magnitudes from which phi is 1
 
-  /// Implicit in the growth term: sigma <- (sigma + C : strain)/(1 + dt lambda/rho0).
+  /// Implicit in the growth term: sigma - b 1 <- (sigma + C : strain - b 1)/(1 + dt lambda/rho0). Where b = pi, the
+  /// step leaves pi as it is.
   static void step(const LawStep<Dim>& s, State& cell) {
     cell.stress += elastic_stress<Dim>(s.stiffness, s.strain);
     if (s.lambda_ug_mm3_h <= 0.0) return;
-    const double tension = volume_strain<Dim>(s.stiffness, cell.stress);
-    if (tension <= 0.0) return;
-    const double share =
-        std::min(1.0, tension / (full_from * elastic_strain<Dim>(s.stiffness, cell.stress).template lpNorm<1>()));
-    const double growth = share * s.dt_h * s.lambda_ug_mm3_h / s.rho0_ug_mm3;
+    const double bulk = bulk_modulus<Dim>(s.stiffness), tension = volume_strain<Dim>(s.stiffness, cell.stress);
+    const double growth = s.dt_h * s.lambda_ug_mm3_h / s.rho0_ug_mm3, kept = std::min(s.yield_MPa, bulk * tension);
+    auto normal = cell.stress.template head<Dim>().array();
+    normal -= kept;
     cell.stress /= 1.0 + growth;
-    cell.mass *= std::exp(growth * tension / (1.0 + growth));  // strains add up, so masses multiply
+    normal += kept;
+    const double beyond = tension - s.yield_MPa / bulk;
+    if (beyond > 0.0) cell.mass *= std::exp(growth * beyond / (1.0 + growth));  // strains add up, so masses multiply
   }
 
   static VoigtMat<Dim> tangent(const Stiffness<Dim>& k) { return elastic_tangent<Dim>(k); }
@@ -52,10 +55,10 @@ struct ElasticGrowth {
     return pressure_strain<Dim>(k, p_MPa);
   }
 
-  /// lambda/rho0 times the strains above; tissue under negative pressure does not grow back.
-  static AxialRadial growth_rate(const Stiffness<Dim>& k, double p_MPa, double lambda_over_rho0_per_h) {
-    const AxialRadial e = pressure_strain<Dim>(k, p_MPa);
-    if (e.axial + (Dim - 1) * e.radial <= 0.0) return {0.0, 0.0};
+  /// lambda/rho0 times the strains that p has beyond the yield stress; tissue below it does not grow back.
+  static AxialRadial growth_rate(const Stiffness<Dim>& k, double p_MPa, double lambda_over_rho0_per_h,
+                                 double yield_MPa = 0.0) {
+    const AxialRadial e = pressure_strain<Dim>(k, std::max(0.0, p_MPa - yield_MPa));
     return {lambda_over_rho0_per_h * e.axial, lambda_over_rho0_per_h * e.radial};
   }
 };

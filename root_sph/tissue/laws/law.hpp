@@ -20,6 +20,7 @@ struct LawStep {
   double dt_h;               ///< length of the step
   double lambda_ug_mm3_h;    ///< softening; 0 where there is no growth
   double rho0_ug_mm3;        ///< density without stress
+  double yield_MPa = 0.0;    ///< isotropic stress beyond which the volume grows
 };
 
 /// A symmetric tensor in the material frame that a law carries in every cell besides the stress. It belongs to the
@@ -43,7 +44,8 @@ struct LawState {
 /// Everything that the program asks of a law; the functions are pure but for the state that step advances.
 template <class Law>
 concept IsTissueLaw = requires(const Stiffness<Law::dimension>& k, const LawStep<Law::dimension>& step,
-                               typename Law::State& state, double p_MPa, double lambda_over_rho0_per_h) {
+                               typename Law::State& state, double p_MPa, double lambda_over_rho0_per_h,
+                               double yield_MPa) {
   // its name in the scene file, what it is in a line, and where it comes from
   { Law::name } -> std::convertible_to<std::string_view>;
   { Law::meaning } -> std::convertible_to<std::string_view>;
@@ -60,7 +62,7 @@ concept IsTissueLaw = requires(const Stiffness<Law::dimension>& k, const LawStep
   { Law::density_ratio(k, p_MPa) } -> std::same_as<double>;
   // closed form of a straight root with sigma = p 1: logarithmic strains without growth, and strain rates with it, 1/h
   { Law::equilibrium_strain(k, p_MPa) } -> std::same_as<AxialRadial>;
-  { Law::growth_rate(k, p_MPa, lambda_over_rho0_per_h) } -> std::same_as<AxialRadial>;
+  { Law::growth_rate(k, p_MPa, lambda_over_rho0_per_h, yield_MPa) } -> std::same_as<AxialRadial>;
 };
 
 }  // namespace rootsoil
