@@ -49,8 +49,8 @@ void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, Pa
   const auto& cells = tissue.cells;
   const auto& pairs = tissue.pairs.pairs;
   terms.weight.resize(pairs.size());
-  std::vector<Vec<Dim>> slip;
-  if (terms.non_affine) slip.assign(pairs.size(), Vec<Dim>::Zero());
+  std::vector<PairSlip<Dim>> slip;
+  if (terms.non_affine) slip.assign(pairs.size(), PairSlip<Dim>::Zero());
 
 #pragma omp parallel for schedule(static)
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -62,14 +62,15 @@ void rebuild_pair_terms(const Tissue<Dim>& tissue, const PairList& old_pairs, Pa
     if (!terms.non_affine) continue;
     std::int64_t a = tissue.window_index[i], b = tissue.window_index[j];
     if (a < 0 || b < 0) continue;  // a new cell has no history
-    const double sign = a < b ? 1.0 : -1.0;
-    if (a > b) std::swap(a, b);
+    const bool turned_round = a > b;
+    if (turned_round) std::swap(a, b);
     const auto first = old_pairs.pairs.begin() + old_pairs.row[a];
     const auto last = old_pairs.pairs.begin() + old_pairs.row[a + 1];
     const auto found = std::lower_bound(first, last, b, [](const Pair& p, std::int64_t key) { return p.j < key; });
     if (found == last || found->j != b) continue;
     const Mat<Dim> turn = cells.frame[i] * (*terms.non_affine->start_frame)[i].transpose();
-    slip[k] = sign * (turn * terms.non_affine->slip_mm[found - old_pairs.pairs.begin()]);
+    const PairSlip<Dim>& old = terms.non_affine->slip_mm[found - old_pairs.pairs.begin()];
+    slip[k] = turn * (turned_round ? reversed<Dim>(old) : old);
   }
   if (terms.non_affine) terms.non_affine->slip_mm.swap(slip);
   set_slip_retention<Dim>(tissue, terms);

@@ -12,13 +12,24 @@ namespace rootsoil {
 /// (docs/decisions/0009).
 inline constexpr double slip_creep_ratio = 40.0;
 
-/// Resistance against pair motions that no velocity gradient can see (odd-even modes): the pair velocity minus
-/// its affine part is damped, and its integral e is resisted by a small elastic penalty. docs/physics.md 5.4.
+/// Of a pair (i, j), mm: how far j went from i beyond what i's gradient takes it (first column), or j's (second).
+template <int Dim>
+using PairSlip = Eigen::Matrix<double, Dim, 2>;
+
+/// That of the pair (j, i).
+template <int Dim>
+PairSlip<Dim> reversed(const PairSlip<Dim>& slip) {
+  return -slip.rowwise().reverse();
+}
+
+/// Resistance against pair motions that velocity gradients do not see: odd-even modes, and what varies within a cell.
+/// The pair velocity minus its affine part is damped, and its integral e is resisted by an elastic penalty, with the
+/// energy 1/4 c w (|e_i|^2 + |e_j|^2) of a pair. docs/physics.md 5.4.
 template <int Dim>
 struct NonAffineControl {
   double damping;                        ///< alpha
   double stiffness_MPa;                  ///< fraction of E_axial times E_axial
-  std::vector<Vec<Dim>> slip_mm;         ///< e of each pair, from i to j; survives a rebuild for pairs that survive
+  std::vector<PairSlip<Dim>> slip_mm;    ///< e of each pair; survives a rebuild for pairs that survive
   std::vector<double> retention;         ///< what creep leaves of e in a step, of each pair; empty where nothing grows
   Field<Dim, Vec<Dim>>* start_position;  ///< mm, at the window's start
   Field<Dim, Mat<Dim>>* start_frame;

@@ -23,8 +23,8 @@ struct Balance {
 };
 
 /// Solves f(d) = 0 by a quasi-Newton iteration: d += M^-1 f, M from the stiffness at the predictor, improved by
-/// Anderson's mixing of the last iterations in the norm of M^-1 (f is not quite the gradient of an energy: the pair
-/// resistance's force is not the adjoint of its slip, and friction is none).
+/// Anderson's mixing of the last iterations in the norm of M^-1 (f is not quite the gradient of an energy: friction is
+/// none).
 template <int Dim>
 class QuasiStatic {
  public:

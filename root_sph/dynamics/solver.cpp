@@ -391,7 +391,7 @@ void Solver<Dim>::save(std::map<std::string, std::vector<double>>& reals,
   for (std::size_t k = 0; k < tissue_.pairs.pairs.size(); ++k) {
     index.push_back(tissue_.pairs.pairs[k].i);
     index.push_back(tissue_.pairs.pairs[k].j);
-    slip.insert(slip.end(), terms_.non_affine->slip_mm[k].data(), terms_.non_affine->slip_mm[k].data() + Dim);
+    slip.insert(slip.end(), terms_.non_affine->slip_mm[k].data(), terms_.non_affine->slip_mm[k].data() + 2 * Dim);
   }
   std::vector<double>& frames = reals["solver/start_frames"];
   for (std::size_t i = 0; i < tissue_.cells.size(); ++i) {
@@ -420,7 +420,7 @@ void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& real
   const auto& slip = reals.at("solver/slip_mm");
   const auto& frames = reals.at("solver/start_frames");
   const std::size_t count = index.size() / 2;
-  ROOTSOIL_ASSERT(slip.size() == count * Dim && frames.size() == n * Dim * Dim);
+  ROOTSOIL_ASSERT(slip.size() == count * 2 * Dim && frames.size() == n * Dim * Dim);
   tissue_.pairs = PairList{};
   tissue_.pairs.row.assign(n + 1, 0);
   terms_.non_affine->slip_mm.resize(count);
@@ -428,7 +428,7 @@ void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& real
     tissue_.pairs.pairs.push_back(
         {static_cast<std::int32_t>(index[2 * k]), static_cast<std::int32_t>(index[2 * k + 1])});
     ++tissue_.pairs.row[static_cast<std::size_t>(index[2 * k]) + 1];
-    terms_.non_affine->slip_mm[k] = Eigen::Map<const Vec<Dim>>(slip.data() + k * Dim);
+    terms_.non_affine->slip_mm[k] = Eigen::Map<const PairSlip<Dim>>(slip.data() + k * 2 * Dim);
   }
   for (std::size_t i = 0; i < n; ++i) {
     tissue_.pairs.row[i + 1] += tissue_.pairs.row[i];

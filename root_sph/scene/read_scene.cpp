@@ -280,7 +280,8 @@ class Reader {
         const std::string path = key_path(section, 0, key.name);
         const bool given = scene_.origins.has(path);
         const bool supplied = language_.supplied_by_response(section, key, scene_);
-        if (!given && !supplied && key.required) fail_missing(section, path, key);
+        if (!given && !supplied && key.required && language_.applies(section, key, scene_, 0))
+          fail_missing(section, path, key);
         if (given && supplied) {
           scene_.origins.fail(fmt::format("{}.{}", response_section_name(section.name), key.name),
                               fmt::format("{} is given in [{}] too", key.name, section.name), {}, {},

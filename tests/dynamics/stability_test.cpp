@@ -76,7 +76,7 @@ struct SmallBlock {
         tissue.deformation[i].setIdentity();
       }
       if (terms.non_affine)
-        std::fill(terms.non_affine->slip_mm.begin(), terms.non_affine->slip_mm.end(), Vec<Dim>::Zero());
+        std::fill(terms.non_affine->slip_mm.begin(), terms.non_affine->slip_mm.end(), PairSlip<Dim>::Zero());
       cells.velocity[static_cast<std::size_t>(column / Dim)][column % Dim] = speed;
       const std::vector<double> volume = cells.volume.values();
       const std::vector<Mat<Dim>> frame = cells.frame.values();

@@ -13,6 +13,13 @@ namespace rootsoil {
 namespace {
 
 void complete_growth(Scene& scene) {
+  const Rows& table = scene.find<GrowthSection>()->table;
+  check_increasing(table, "growth.table", "distances", scene.origins);
+  for (const std::string key : {"lambda0_ug_mm3_h", "x_g_mm", "s_g_mm", "c_g"}) {
+    if (table.empty() || !scene.origins.has("response.growth." + key)) continue;
+    scene.origins.fail("response.growth." + key, "growth.table does not respond", {}, {},
+                       "give the keys of Eq. 6 in place of the table, or remove the pair");
+  }
   check_increasing(scene.find<GrowthSection>()->yield, "growth.yield_profile", "distances", scene.origins);
 }
 
@@ -24,14 +31,17 @@ SectionSpec growth_section() {
                      "Walls soften and yield: lambda = lambda0 ((1+c_g)/2 + (1-c_g)/2 (s-x_g)/s_g "
                      "exp(0.5 - (s-x_g)^2/(2 s_g^2))), never below 0.", {
     key(&Gr::lambda0_ug_mm3_h, "lambda0_ug_mm3_h", "ug/mm^3/h", at_least(0),
-        "Softening coefficient; measured roots need about a tenth of the printed values.", "Eq. 6, Table 1, docs/physics.md 4")
-        .required().responds(),
+        "Softening coefficient; measured roots need about a tenth of the printed values. Eq. 6, or table.", "Eq. 6, Table 1, docs/physics.md 4")
+        .required().only_without("table").responds(),
     key(&Gr::x_g_mm, "x_g_mm", "mm", place_mm, "Inflection of the bell; its peak lies at x_g + s_g.", "Eq. 6, Table 1")
-        .required().responds(),
+        .required().only_without("table").responds(),
     key(&Gr::s_g_mm, "s_g_mm", "mm", above(0).up_to(1e3, microns), "Width of the bell.", "Eq. 6, Table 1")
-        .required().responds(),
+        .required().only_without("table").responds(),
     key(&Gr::c_g, "c_g", "-", fraction, "Scale: far from the tip lambda tends to (1+c_g)/2 lambda0.", "Eq. 6, Table 1")
-        .required().responds(),
+        .required().only_without("table").responds(),
+    key(&Gr::table, "table", "mm, ug/mm^3/h", at_least(0),
+        "[[distance from the tip, lambda], ...] in place of Eq. 6: linear in between, constant before and after.",
+        "docs/decisions/0026").written_when([](const Gr& s) { return !s.table.empty(); }),
     key(&Gr::mature_at_mm, "mature_at_mm", "mm", above(0).up_to(1e3, microns),
         "Growth ends at this distance from the tip; none: Eq. 6 to the letter.", "docs/physics.md 4"),
     key(&Gr::mature_width_mm, "mature_width_mm", "mm", above(0).up_to(1e3, microns), "Width of that end.", "docs/physics.md 4")
@@ -52,12 +62,17 @@ const SectionSpec& growth_specification() {
   return spec;
 }
 
+/// Eq. 6, second.
+double bell_ug_mm3_h(const GrowthSection& g, double s_mm) {
+  const double z = (s_mm - g.x_g_mm) / g.s_g_mm;
+  const double bell = z * std::exp(0.5 - 0.5 * z * z);
+  return g.lambda0_ug_mm3_h * (0.5 * (1.0 + g.c_g) + 0.5 * (1.0 - g.c_g) * bell);
+}
+
 }  // namespace
 
 double softening_ug_mm3_h(const GrowthSection& g, double s_mm) {
-  const double z = (s_mm - g.x_g_mm) / g.s_g_mm;
-  const double bell = z * std::exp(0.5 - 0.5 * z * z);
-  const double lambda = g.lambda0_ug_mm3_h * (0.5 * (1.0 + g.c_g) + 0.5 * (1.0 - g.c_g) * bell);
+  const double lambda = g.table.empty() ? bell_ug_mm3_h(g, s_mm) : value_at(g.table, s_mm);
   if (lambda <= 0.0) return 0.0;
   if (!g.mature_at_mm) return lambda;
   if (g.mature_width_mm <= 0.0) return s_mm < *g.mature_at_mm ? lambda : 0.0;

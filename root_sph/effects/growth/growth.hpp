@@ -13,12 +13,13 @@ struct GrowthSection {
   std::optional<double> mature_at_mm;  ///< absent: Eq. 6 to the letter, growth never ends
   double mature_width_mm = 0.1;
   Rows yield{};  ///< (mm from the tip, MPa), distances increasing; none: Eq. 2, anything stretched grows
+  Rows table{};  ///< (mm from the tip, ug/(mm^3 h)), distances increasing, in place of Eq. 6
 };
 
-/// lambda(s), Eq. 6, second: lambda0 ((1 + c_g)/2 + (1 - c_g)/2 z exp(1/2 - z^2/2)), z = (s - x_g)/s_g, ug/(mm^3 h).
-/// Clipped at 0 (to the letter it is negative below x_g - s_g when c_g < 0), and times a mature cut-off: to the
-/// letter it tends to (1 + c_g)/2 lambda0, mature tissue would grow for ever. The cut-off falls from 1 to 0 as a
-/// cubic between mature_at - width/2 and mature_at + width/2.
+/// lambda(s): the table, linear between its rows, or Eq. 6, second: lambda0 ((1 + c_g)/2 + (1 - c_g)/2 z exp(1/2 -
+/// z^2/2)), z = (s - x_g)/s_g, ug/(mm^3 h). Clipped at 0 (to the letter it is negative below x_g - s_g when c_g < 0),
+/// and times a mature cut-off: to the letter it tends to (1 + c_g)/2 lambda0, mature tissue would grow for ever. The
+/// cut-off falls from 1 to 0 as a cubic between mature_at - width/2 and mature_at + width/2.
 double softening_ug_mm3_h(const GrowthSection& growth, double s_mm);
 
 /// Stress beyond which the tissue grows: linear between the rows and constant beyond them, MPa; 0 where there are none.

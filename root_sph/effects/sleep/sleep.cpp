@@ -213,7 +213,8 @@ void SleepEffect<Dim>::keep_slips(const Tissue<Dim>& tissue, const std::vector<c
       continue;
     const std::int64_t a = tissue.cells.cell_id[static_cast<std::size_t>(i)],
                        b = tissue.cells.cell_id[static_cast<std::size_t>(j)];
-    slips_.push_back(a < b ? RestingSlip{a, b, control->slip_mm[k]} : RestingSlip{b, a, -control->slip_mm[k]});
+    slips_.push_back(a < b ? RestingSlip{a, b, control->slip_mm[k]}
+                           : RestingSlip{b, a, reversed<Dim>(control->slip_mm[k])});
   }
 }
 
@@ -231,9 +232,9 @@ void SleepEffect<Dim>::give_slips_back(const Tissue<Dim>& tissue) {
     const std::int64_t a = tissue.cells.cell_id[static_cast<std::size_t>(i)],
                        b = tissue.cells.cell_id[static_cast<std::size_t>(j)];
     const auto found = std::lower_bound(slips_.begin(), slips_.end(),
-                                        RestingSlip{std::min(a, b), std::max(a, b), Vec<Dim>::Zero()}, before);
+                                        RestingSlip{std::min(a, b), std::max(a, b), PairSlip<Dim>::Zero()}, before);
     if (found == slips_.end() || found->first_id != std::min(a, b) || found->second_id != std::max(a, b)) continue;
-    control->slip_mm[k] = a < b ? found->slip_mm : Vec<Dim>(-found->slip_mm);
+    control->slip_mm[k] = a < b ? found->slip_mm : reversed<Dim>(found->slip_mm);
   }
   slips_.clear();
 }
@@ -316,7 +317,7 @@ void SleepEffect<Dim>::save(NamedReals& reals) const {
   for (const RestingSlip& s : slips_) {
     slips.push_back(static_cast<double>(s.first_id));
     slips.push_back(static_cast<double>(s.second_id));
-    slips.insert(slips.end(), s.slip_mm.data(), s.slip_mm.data() + Dim);
+    slips.insert(slips.end(), s.slip_mm.data(), s.slip_mm.data() + 2 * Dim);
   }
 }
 
@@ -339,9 +340,10 @@ void SleepEffect<Dim>::restore(const NamedReals& reals) {
   woken_ = static_cast<std::int64_t>(state.at(7));
   const std::vector<double>& slips = reals.at("sleep/slips");
   slips_.clear();
-  for (std::size_t k = 0; k + Dim + 2 <= slips.size(); k += Dim + 2) {
+  constexpr std::size_t length = 2 + 2 * Dim;
+  for (std::size_t k = 0; k + length <= slips.size(); k += length) {
     slips_.push_back({static_cast<std::int64_t>(slips[k]), static_cast<std::int64_t>(slips[k + 1]),
-                      Eigen::Map<const Vec<Dim>>(slips.data() + k + 2)});
+                      Eigen::Map<const PairSlip<Dim>>(slips.data() + k + 2)});
   }
 }
 

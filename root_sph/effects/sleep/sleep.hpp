@@ -44,7 +44,7 @@ class SleepEffect final : public Effect<Dim> {
   /// e of the non-affine control between two cells of which one rests at least.
   struct RestingSlip {
     std::int64_t first_id, second_id;  ///< first < second
-    Vec<Dim> slip_mm;                  ///< from the first to the second
+    PairSlip<Dim> slip_mm;             ///< from the first to the second
   };
 
   void carry_resting(Tissue<Dim>& tissue);
