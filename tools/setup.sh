@@ -28,6 +28,7 @@ libgmock-dev         tests of the program: matchers
 libbenchmark-dev     benchmarks
 python3-pytest       tests of the tools and of the command line
 python3-pytest-xdist two of these tests at once
+python3-scipy        tests of the tools: regions, minima and Voronoi diagrams to compare cell walls with
 "
 # A scene without [soil] starts no process and needs none of this.
 soil_packages="

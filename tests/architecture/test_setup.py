@@ -31,6 +31,7 @@ PACKAGES: dict[str, tuple[set[str], set[str], set[str]]] = {
     "python3-matplotlib": (set(), set(), {"matplotlib"}),
     "python3-tomli-w": (set(), set(), {"tomli_w"}),
     "python3-pytest": (set(), set(), {"pytest"}),
+    "python3-scipy": (set(), set(), {"scipy"}),
     "yade": (set(), set(), {"yade"}),
     "cmake": (set(), {"GoogleTest"}, set()),
 }

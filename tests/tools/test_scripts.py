@@ -141,7 +141,14 @@ def test_setup_installs_only_what_is_asked_for(project: Path, machine, options: 
     installed = log.read_text().split()
     for option, packages in {
         "--soil": {"yade"},
-        "--test": {"libgtest-dev", "libgmock-dev", "libbenchmark-dev", "python3-pytest", "python3-pytest-xdist"},
+        "--test": {
+            "libgtest-dev",
+            "libgmock-dev",
+            "libbenchmark-dev",
+            "python3-pytest",
+            "python3-pytest-xdist",
+            "python3-scipy",
+        },
         "--dev": {"clang-format", "clang-tidy", "cppcheck", "black", "flake8", "mypy", "codespell", "pre-commit"},
     }.items():
         assert packages & set(installed) == (packages if option in options else set())

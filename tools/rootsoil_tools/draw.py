@@ -89,20 +89,24 @@ def cell_ellipses(frame: Frame, dimension: int) -> tuple[np.ndarray, np.ndarray,
     return frame["position"][:, :2], 1.0 / np.sqrt(eigenvalues), vectors[:, :, 0]
 
 
-def in_middle_plane(frame: Frame, dimension: int) -> np.ndarray:
-    """Which cells to draw: all in 2D; in 3D those that a plane of constant z near the root's middle cuts.
+def reach_in_z(frame: Frame) -> np.ndarray:
+    """Half the height of each cell of a 3D run in z (n; mm)."""
+    shape = frame.shape_matrices(3)
+    if shape is None:
+        return frame["cell_axes"][:, 1:].mean(axis=1) / 2.0
+    return np.sqrt(np.linalg.inv(shape)[:, 2, 2])
 
-    The plane lies a little off the middle, where on a lattice two layers of cells can meet.
-    """
+
+def middle_plane(frame: Frame) -> float:
+    """z (mm) of a plane near the root's middle; a little off it, where on a lattice two layers of cells can meet."""
+    return float(frame["position"][:, 2].mean() + 0.3 * np.median(reach_in_z(frame)))
+
+
+def in_middle_plane(frame: Frame, dimension: int) -> np.ndarray:
+    """Which cells to draw: all in 2D; in 3D those that the middle plane cuts."""
     if dimension == 2:
         return np.ones(frame.cells, dtype=bool)
-    shape = frame.shape_matrices(dimension)
-    if shape is None:
-        reach = frame["cell_axes"][:, 1:].mean(axis=1) / 2.0
-    else:
-        reach = np.sqrt(np.linalg.inv(shape)[:, 2, 2])
-    z = frame["position"][:, 2]
-    return np.abs(z - z.mean() - 0.3 * np.median(reach)) < reach
+    return np.abs(frame["position"][:, 2] - middle_plane(frame)) < reach_in_z(frame)
 
 
 def draw_cells(
@@ -173,7 +177,7 @@ def draw_obstacles(axes: Axes, obstacles: list[dict], box: tuple[float, ...], of
         patch.set_clip_path(Rectangle((x0 + offset[0], y0 + offset[1]), x1 - x0, y1 - y0, transform=axes.transData))
 
 
-def scale_bar(figure: Figure, right: float, bottom: float, scale: float) -> None:
+def scale_bar(figure: Figure, right: float, bottom: float, scale: float, microns: bool = False) -> None:
     """A bar of a round length of at most 20 mm of paper, its length left of it; `scale` is mm of paper per mm."""
     raw = 20.0 / scale
     power = 10.0 ** np.floor(np.log10(raw))
@@ -183,7 +187,8 @@ def scale_bar(figure: Figure, right: float, bottom: float, scale: float) -> None
     axes.axhspan(0.0, 1.0, color="black", linewidth=0)
     paper = figure.get_size_inches() * 25.4
     left = (right - bar * scale - 1.2) / paper[0]
-    figure.text(left, (bottom + 0.35) / paper[1], f"{bar:g} mm", ha="right", va="center_baseline", size=7)
+    label = f"{1e3 * bar:g} µm" if microns else f"{bar:g} mm"
+    figure.text(left, (bottom + 0.35) / paper[1], label, ha="right", va="center_baseline", size=7)
 
 
 def draw_profile(axes: Axes, profile: Profile) -> None:

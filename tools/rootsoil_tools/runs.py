@@ -26,6 +26,7 @@ class Frame:
     time_h: float
     fields: dict[str, np.ndarray]
     tables: dict[str, dict[str, np.ndarray]] = field(default_factory=dict)  # beside the cells: markers, grains ...
+    units: dict[str, str] = field(default_factory=dict)  # of fields, as run.h5 has them; "1" is none
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.fields:
@@ -64,8 +65,9 @@ class Frame:
 class Run:
     """A run's folder."""
 
-    def __init__(self, folder: Path | str):
-        self.folder = Path(folder)
+    def __init__(self, path: Path | str):
+        """Of the folder, or of its run.h5."""
+        self.folder = Path(path).parent if Path(path).name == "run.h5" else Path(path)
         self.scene = self._read_scene()
         self.times_h, self._groups = self._list_frames()
         self.dimension = int(self.scene["scene"].get("dimension", 2))
@@ -100,13 +102,22 @@ class Run:
         """One frame; -1 is the last."""
         with self._open() as file:
             group = file["frames"][self._groups[index]]
-            fields = {name: dataset[()] for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
+            datasets = {name: dataset for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
+            fields = {name: dataset[()] for name, dataset in datasets.items()}
+            units = {name: str(dataset.attrs.get("unit", "1")) for name, dataset in datasets.items()}
             tables = {
                 name: {column: dataset[()] for column, dataset in subgroup.items()}
                 for name, subgroup in group.items()
                 if isinstance(subgroup, h5py.Group)
             }
-        return Frame(float(self.times_h[index]), fields, tables)
+        return Frame(float(self.times_h[index]), fields, tables, units)
+
+    def nearest_frame(self, time_h: float) -> int:
+        """Index of the frame nearest to a time, as `rootsoil export --time` chooses it."""
+        first, last = self.times_h[0], self.times_h[-1]
+        if not first <= time_h <= last:
+            raise RunError(f"no frame at {time_h:g} h: {self.folder / 'run.h5'} has {first:g} to {last:g} h")
+        return int(np.argmin(np.abs(self.times_h - time_h)))
 
     def window(self, hours: float, most: int = 40) -> list[int]:
         """Indices of at most `most` frames in the last `hours` h, but in no more than the last third of the run."""
