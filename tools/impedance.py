@@ -64,7 +64,7 @@ def measure_member(p: float, run: Run) -> Member:
     last = run.frame(-1)
     model = last.closed_form
     length = float(last["distance_to_tip"].max())
-    zone = model.growth_zone(length)
+    zone = min(model.growth_zone(length), MEASURED_MM)
     edges = measure.edges_of(min(1.3 * zone, length, MEASURED_MM), measure.bin_width(last, run.dimension, zone))
     profiles = measure.growth_profiles(run, edges)
     rate = profiles["axial_strain_rate"]
@@ -100,7 +100,8 @@ class Comparison:
         low, high = f"{self.reference.low:g}", f"{self.reference.high:g}"
         asked = low if low == high else f"{low} to {high}"
         unit = "" if self.reference.unit == "1" else f" {self.reference.unit}"
-        return f"{self.what}: {self.found:.3g}{unit}, published {asked}{unit} ({self.reference.source})"
+        found = f"{self.found:.3g}{unit}" if np.isfinite(self.found) else "none"
+        return f"{self.what}: {found}, published {asked}{unit} ({self.reference.source})"
 
 
 def halved_at(order: list[Member]) -> float:
@@ -131,7 +132,7 @@ def comparisons(order: list[Member]) -> list[Comparison]:
         compare("growth zone in hard soil", hard.growth_zone, "growth zone in hard soil", 1, at, False)
     if soft and hard:
         wider = hard.mature_radius / soft.mature_radius - 1.0
-        compare("mature radius, hard over soft soil, - 1", wider, WIDER, 5, hard.penetrometer, True)
+        compare("mature radius, hard over soft soil, less 1", wider, WIDER, 5, hard.penetrometer, True)
     return found
 
 
@@ -173,8 +174,8 @@ def draw_series(members: list[Member], out: Path) -> None:
         "axial strain rate (1/h)",
         "radial modulus $E_R$ (GPa)",
         "radius (mm)",
-        f"tip speed over that {softest}",
-        f"mature radius over that {softest}, − 1",
+        f"tip speed over that\n{softest}",
+        f"mature radius over that\n{softest}, less 1",
     )
     for index, (panel, label, name, (x, y)) in enumerate(zip(panels, labels, "ABCDEF", places)):
         panel.set_ylabel(label)

@@ -366,7 +366,7 @@ def test_impedance_series(project: Path, tmp_path: Path):
     assert series["0.5"]["relative_radius"] == pytest.approx(ratio, rel=1e-5) and ratio != 1.0
     # the published number stands beside what was found
     wider = published.reference("diameter increase soft to hard soil", "pea")
-    said = re.search(r"hard over soft soil, - 1: (\S+), published (\S+) \((.*)\)", done.stdout)
+    said = re.search(r"hard over soft soil, less 1: (\S+), published (\S+) \((.*)\)", done.stdout)
     assert said and float(said[1]) == pytest.approx(ratio - 1.0, rel=0.01)
     assert (float(said[2]), said[3]) == (wider.low, wider.source)
 
