@@ -167,6 +167,14 @@ def test_drift_of_the_mature_radius(grown: Path, tmp_path: Path):
     assert measure.mature_radius(model, Run(faster)) == pytest.approx(radius * np.exp(0.01 * 10.0), rel=1e-3)
 
 
+def test_tissue_of_the_start_is_not_mature(tmp_path: Path):
+    """In a slow root new tissue has left the growth zone at the end, but not yet when a longer window begins."""
+    run = Run(make_growing_run(tmp_path / "run", pressure=0.5, cell=0.02))
+    model = run.frame(-1).closed_form
+    assert measure.mature_radii(model, run, 1.0)[0] == pytest.approx([11.0, 12.0], abs=1e-6)
+    assert measure.mature_radii(model, run, 10.0)[0].size == 0
+
+
 def test_contact_measures(grown: Path, tmp_path: Path):
     for dimension, section in ((2, 0.6), (3, 112 * 0.05**2)):
         run = Run(make_strained_run(tmp_path / f"{dimension}", dimension=dimension))
@@ -286,8 +294,8 @@ def test_published_numbers_have_a_source():
 
 def test_where_growth_ends():
     s = np.array([1.0, 2.0, 3.0, 4.0])
-    assert growth_ends(s, np.array([1.0, 0.04, 0.06, 0.04])) == 4.0
-    assert growth_ends(s, np.array([1.0, 0.06, 0.04, 0.04])) == 3.0
+    assert growth_ends(s, np.array([1.0, 0.04, 0.06, 0.04])) == pytest.approx(3.5)
+    assert growth_ends(s, np.array([1.0, 0.08, 0.04, 0.04])) == pytest.approx(2.75)
     assert growth_ends(s, np.ones(4)) == growth_ends(s, np.zeros(4)) == 4.0
 
 
@@ -329,7 +337,7 @@ def test_impedance_series(project: Path, tmp_path: Path):
     paths = [str(project / "tools"), str(project / "tests" / "tools")]
     program.write_text(FAKE_PROGRAM.format(paths=paths, log=str(log)))
     program.chmod(0o755)
-    scene.write_text("[scene]\nduration_h = 12.0\n")
+    scene.write_text("[scene]\nduration_h = 18.0\n")
     command = [project / "tools" / "impedance.py", scene, "--out", out, "--program", program]
     command += ["--pressures", "1", "0.5"]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -373,7 +381,7 @@ def test_impedance_series(project: Path, tmp_path: Path):
     # finished runs are taken as they are; a changed scene is not mistaken for them
     again = subprocess.run(command, capture_output=True, text=True)
     assert again.returncode == 0 and len(log.read_text().splitlines()) == 2
-    scene.write_text("[scene]\nduration_h = 12.0\nseed = 2\n")
+    scene.write_text("[scene]\nduration_h = 18.0\nseed = 2\n")
     refused = subprocess.run(command, capture_output=True, text=True)
     assert refused.returncode == 1 and "another scene" in refused.stderr
     assert len(log.read_text().splitlines()) == 2

@@ -19,8 +19,12 @@ def cumulative_integral(s: np.ndarray, f: np.ndarray) -> np.ndarray:
 
 def growth_ends(s: np.ndarray, rate: np.ndarray) -> float:
     """Distance from the tip (mm) beyond which this rate (1/h) stays below 5 % of its peak; at most the last s."""
-    growing = np.flatnonzero(rate > 0.05 * np.max(rate, initial=0.0))
-    return float(s[min(growing[-1] + 1, s.size - 1)]) if growing.size else float(s[-1])
+    low = 0.05 * np.max(rate, initial=0.0)
+    growing = np.flatnonzero(rate > low)
+    if growing.size == 0 or growing[-1] == s.size - 1:
+        return float(s[-1])
+    after, last = growing[-1] + 1, growing[-1]
+    return float(np.interp(low, rate[[after, last]], s[[after, last]]))
 
 
 @dataclass(frozen=True)
