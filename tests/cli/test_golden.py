@@ -48,6 +48,7 @@ FAMILIES = {
     "case1_isotropic": AT_REST,
     "case2_arabidopsis": ARABIDOPSIS,
     "case2_as_printed": Family(0.05, coarse(0.025, 0.025)),
+    "case3_as_printed": PEA,
     "case3_pea_hard": PEA,
     "case3_pea_soft": PEA,
     "cells_from_microscopy": Family(0.1, ("division.l0_mm=0.019",)),

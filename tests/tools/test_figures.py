@@ -19,6 +19,7 @@ from synthetic import make_growing_run, make_strained_run
 
 from rootsoil_tools import measure, published
 from rootsoil_tools.runs import Frame, Run, RunError
+from rootsoil_tools.theory import growth_ends
 
 PNG = b"\x89PNG\r\n\x1a\n"
 OBSTACLES = """
@@ -166,6 +167,14 @@ def test_drift_of_the_mature_radius(grown: Path, tmp_path: Path):
     assert measure.mature_radius(model, Run(faster)) == pytest.approx(radius * np.exp(0.01 * 10.0), rel=1e-3)
 
 
+def test_tissue_of_the_start_is_not_mature(tmp_path: Path):
+    """In a slow root new tissue has left the growth zone at the end, but not yet when a longer window begins."""
+    run = Run(make_growing_run(tmp_path / "run", pressure=0.5, cell=0.02))
+    model = run.frame(-1).closed_form
+    assert measure.mature_radii(model, run, 1.0)[0] == pytest.approx([11.0, 12.0], abs=1e-6)
+    assert measure.mature_radii(model, run, 10.0)[0].size == 0
+
+
 def test_contact_measures(grown: Path, tmp_path: Path):
     for dimension, section in ((2, 0.6), (3, 112 * 0.05**2)):
         run = Run(make_strained_run(tmp_path / f"{dimension}", dimension=dimension))
@@ -276,6 +285,20 @@ def test_published_curves_are_there():
         assert len(at_mm) == points and (at_mm[0], values[0]) == pytest.approx(first)
 
 
+def test_published_numbers_have_a_source():
+    found = published.reference("growth zone in soft soil", "pea")
+    assert (found.low, found.high, found.unit) == (12.1, 13.3, "mm") and "Croser" in found.source
+    with pytest.raises(ValueError, match="no published value of growth zone in soft soil .maize.*in hard soil .pea"):
+        published.reference("growth zone in soft soil", "maize")
+
+
+def test_where_growth_ends():
+    s = np.array([1.0, 2.0, 3.0, 4.0])
+    assert growth_ends(s, np.array([1.0, 0.04, 0.06, 0.04])) == pytest.approx(3.5)
+    assert growth_ends(s, np.array([1.0, 0.08, 0.04, 0.04])) == pytest.approx(2.75)
+    assert growth_ends(s, np.ones(4)) == growth_ends(s, np.zeros(4)) == 4.0
+
+
 class TwoFrames:
     """Six cells 0.1 mm apart; within 2 h the second divides, and one that was not there before as well."""
 
@@ -314,7 +337,7 @@ def test_impedance_series(project: Path, tmp_path: Path):
     paths = [str(project / "tools"), str(project / "tests" / "tools")]
     program.write_text(FAKE_PROGRAM.format(paths=paths, log=str(log)))
     program.chmod(0o755)
-    scene.write_text("[scene]\nduration_h = 12.0\n")
+    scene.write_text("[scene]\nduration_h = 18.0\n")
     command = [project / "tools" / "impedance.py", scene, "--out", out, "--program", program]
     command += ["--pressures", "1", "0.5"]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -328,12 +351,37 @@ def test_impedance_series(project: Path, tmp_path: Path):
     assert float(row["softening_ug_mm3_h"]) == pytest.approx(
         float(model.at("softening", float(row["distance_mm"]))), rel=1e-5
     )
-    assert "relative" in done.stdout and "+0.0%" in done.stdout
+    # strain rates against Eq. 6 at the same p, over its growth zone; radii against those of the softest soil
+    with (out / "impedance_series.csv").open() as file:
+        series = {row["p_MPa"]: {key: float(value) for key, value in row.items()} for row in csv.DictReader(file)}
+    assert series.keys() == {"1", "0.5"}
+    for p, found in series.items():
+        run = Run(out / f"p_{p}")
+        model = run.frame(-1).closed_form
+        of_p = [row for row in rows if row["p_MPa"] == p and float(row["distance_mm"]) < model.growth_zone(3.0)]
+        exact, measured = (
+            np.array([float(row[f"axial_strain_rate{of}_per_h"]) for row in of_p]) for of in ("_closed_form", "")
+        )
+        filled = np.isfinite(measured)
+        fit = published.fit(exact[filled], measured[filled])
+        assert (found["rate_R2"], found["rate_RMSE_per_h"]) == pytest.approx((fit.r2, fit.rmse), rel=1e-4)
+        assert found["rate_R2"] > 0.99 and 0.0 < found["rate_RMSE_per_h"] < 0.02 * found["peak_rate_per_h"]
+        assert found["growth_zone_mm"] == pytest.approx(model.growth_zone(3.0), abs=0.05)
+        assert found["mature_radius_mm"] == pytest.approx(measure.mature_radius(model, run), rel=1e-5)
+        assert found["drift_percent_10h"] == pytest.approx(1e3 * measure.radius_drift(model, run), rel=1e-5)
+    assert series["1"]["relative_radius"] == 1.0
+    ratio = series["0.5"]["mature_radius_mm"] / series["1"]["mature_radius_mm"]
+    assert series["0.5"]["relative_radius"] == pytest.approx(ratio, rel=1e-5) and ratio != 1.0
+    # the published number stands beside what was found
+    wider = published.reference("diameter increase soft to hard soil", "pea")
+    said = re.search(r"hard over soft soil, less 1: (\S+), published (\S+) \((.*)\)", done.stdout)
+    assert said and float(said[1]) == pytest.approx(ratio - 1.0, rel=0.01)
+    assert (float(said[2]), said[3]) == (wider.low, wider.source)
 
     # finished runs are taken as they are; a changed scene is not mistaken for them
     again = subprocess.run(command, capture_output=True, text=True)
     assert again.returncode == 0 and len(log.read_text().splitlines()) == 2
-    scene.write_text("[scene]\nduration_h = 12.0\nseed = 2\n")
+    scene.write_text("[scene]\nduration_h = 18.0\nseed = 2\n")
     refused = subprocess.run(command, capture_output=True, text=True)
     assert refused.returncode == 1 and "another scene" in refused.stderr
     assert len(log.read_text().splitlines()) == 2

@@ -11,6 +11,7 @@ from rootsoil_tools.runs import Frame, Run
 from rootsoil_tools.theory import ClosedForm
 
 WINDOW_H = 10.0  # profiles are means over the last hours of a run
+DRIFT_WINDOW_H = 40.0  # irregular cells scatter the radius by 0.4 %: a line through 10 h would be uncertain by that
 
 
 @dataclass(frozen=True)
@@ -104,32 +105,33 @@ def strain_profiles(first: Frame, last: Frame, dimension: int, edges: np.ndarray
     return strains[0], strains[1]
 
 
-def mature_radii(model: ClosedForm, run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Times (h) of the last WINDOW_H and the radius (mm) just behind the growth zone, over a quarter of its length.
+def mature_radii(model: ClosedForm, run: Run, hours: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times (h) of the last `hours` and the radius (mm) just behind the growth zone, over a quarter of its length.
 
     Only of tissue that has flowed through the growth zone since the start: tissue that was beyond the zone's first
     quarter at the start is left out, as far as the closed form can tell. Empty where the root ends before.
     """
+    frames = run.window(hours)
     last = run.frame(-1)
     length = float(last["distance_to_tip"].max())
     zone = model.growth_zone(length)
-    end = min(1.25 * zone, length, model.carried_to(0.25 * zone, float(run.times_h[-1]), length))
+    end = min(1.25 * zone, length, model.carried_to(0.25 * zone, float(run.times_h[frames[0]]), length))
     if end <= zone:
         return np.empty(0), np.empty(0)
     window = np.array([zone, end])
-    frames = run.window(WINDOW_H)
     return run.times_h[frames], np.array([radii(run.frame(i), run.dimension, window)[0] for i in frames])
 
 
 def mature_radius(model: ClosedForm, run: Run) -> float:
-    """Mean of mature_radii (mm); NaN where there is none."""
-    radius = mature_radii(model, run)[1]
+    """Mean of mature_radii (mm) over WINDOW_H; NaN where there is none."""
+    radius = mature_radii(model, run, WINDOW_H)[1]
     return float(np.mean(radius)) if radius.size else float("nan")
 
 
 def radius_drift(model: ClosedForm, run: Run) -> float:
-    """Relative change of mature_radii per hour (1/h), from the least-squares line; NaN below three frames."""
-    time, radius = mature_radii(model, run)
+    """Relative change of mature_radii per hour (1/h), from the least-squares line over DRIFT_WINDOW_H; NaN below three
+    frames."""
+    time, radius = mature_radii(model, run, DRIFT_WINDOW_H)
     return float(np.polyfit(time, np.log(radius), 1)[0]) if radius.size > 2 else float("nan")
 
 

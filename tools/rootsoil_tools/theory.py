@@ -17,6 +17,16 @@ def cumulative_integral(s: np.ndarray, f: np.ndarray) -> np.ndarray:
     return np.concatenate([[0.0], np.cumsum(np.diff(s) * (f[1:] + f[:-1]) / 2.0)])
 
 
+def growth_ends(s: np.ndarray, rate: np.ndarray) -> float:
+    """Distance from the tip (mm) beyond which this rate (1/h) stays below 5 % of its peak; at most the last s."""
+    low = 0.05 * np.max(rate, initial=0.0)
+    growing = np.flatnonzero(rate > low)
+    if growing.size == 0 or growing[-1] == s.size - 1:
+        return float(s[-1])
+    after, last = growing[-1] + 1, growing[-1]
+    return float(np.interp(low, rate[[after, last]], s[[after, last]]))
+
+
 @dataclass(frozen=True)
 class ClosedForm:
     """A straight root at one length and pressure differential, in steady growth with nothing in its way.
@@ -65,9 +75,7 @@ class ClosedForm:
     def growth_zone(self, length: float) -> float:
         """Distance from the tip (mm) beyond which the axial rate stays below 5 % of its peak; at most the length."""
         s = self.grid(length)
-        rate = self.axial_rate(s)
-        growing = np.flatnonzero(rate > 0.05 * rate.max())
-        return float(s[min(growing[-1] + 1, s.size - 1)]) if growing.size else length
+        return growth_ends(s, self.axial_rate(s))
 
     def radius(self, s: np.ndarray, s_start: float, radius_start: float) -> np.ndarray:
         """Radius (mm) of a root in steady growth that has radius_start at s_start, in the growth zone or behind it; NaN
