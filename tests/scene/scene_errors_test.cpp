@@ -162,6 +162,12 @@ std::vector<Case> cases() {
        "exclude each other"},
       {"yield_profile_responds", grown + "yield_profile = [[1, 0.1]]\n" + response_growth + "yield_MPa = [0, 0.1]\n",
        "growth.yield_profile", "exclude each other"},
+      {"growth_table_and_bell", grown + "table = [[0, 1e5]]\n", "growth.lambda0_ug_mm3_h", "exclude each other"},
+      {"growth_table_not_increasing", minimal + "\n[growth]\ntable = [[1, 1e5], [1, 2e5]]\n", "growth.table",
+       "distances do not increase"},
+      {"growth_table_responds",
+       minimal + pressure + "\n[growth]\ntable = [[0, 1e5]]\n" + response_growth + "x_g_mm = [0, 1]\n",
+       "response.growth.x_g_mm", "does not respond"},
       {"growth_key_missing", minimal + "\n[growth]\nx_g_mm = 1\ns_g_mm = 1\nc_g = 0\n", "growth.lambda0_ug_mm3_h",
        "as a pair in [response.growth]"},
 

@@ -24,6 +24,10 @@ void complete_division(Scene& scene) {
   check_one_of("division", "l0_mm", "table", scene.origins);
   const Rows& table = scene.find<DivisionSection>()->table;
   check_increasing(table, "division.table", "distances", scene.origins);
+  if (scene.find<DivisionSection>()->asynchronous && scene.origins.has("root.cells_file")) {
+    scene.origins.fail("division.asynchronous", "the cells of a file have the lengths that the file gives", {}, {},
+                       "remove this key; cells of a file are in their cycle where their lengths say");
+  }
   if (table.empty()) return;
   for (const std::string key : {"c_d", "s_d_per_mm2", "x_d_mm", "constant_beyond_mm"}) {
     if (!scene.origins.has("division." + key)) continue;

@@ -41,7 +41,7 @@ SectionSpec growth_section() {
         .required().only_without("table").responds(),
     key(&Gr::table, "table", "mm, ug/mm^3/h", at_least(0),
         "[[distance from the tip, lambda], ...] in place of Eq. 6: linear in between, constant before and after.",
-        "docs/decisions/0026").written_when([](const Gr& s) { return !s.table.empty(); }),
+        "docs/decisions/0023").written_when([](const Gr& s) { return !s.table.empty(); }),
     key(&Gr::mature_at_mm, "mature_at_mm", "mm", above(0).up_to(1e3, microns),
         "Growth ends at this distance from the tip; none: Eq. 6 to the letter.", "docs/physics.md 4"),
     key(&Gr::mature_width_mm, "mature_width_mm", "mm", above(0).up_to(1e3, microns), "Width of that end.", "docs/physics.md 4")
