@@ -13,6 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from growth_curves import HALF_WIDTH_MM, OUTPUTS, curve
 from matplotlib import pyplot as plt
 from overview import draw_contact, percent
 from synthetic import make_growing_run, make_strained_run
@@ -314,6 +315,37 @@ class TwoFrames:
 def test_division_rate_counts_mothers_between_frames():
     rates = measure.division_rates(TwoFrames(), [0, 1], np.array([0.16, 0.46, 3.0]), 0.05)
     assert rates[0, :2] == pytest.approx([1.0 / (1.5 * 2.0), 0.0]) and np.isnan(rates[0, 2])
+
+
+def growth_curves(project: Path, run: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([project / "tools" / "growth_curves.py", run, *options], capture_output=True, text=True)
+
+
+def test_growth_curves_beside_measured_ones(project: Path, grown: Path, tmp_path: Path):
+    done = growth_curves(project, grown, "--out", str(tmp_path / "curves.png"))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "curves.png").read_bytes().startswith(PNG)
+    for line in (
+        "axial strain rate: R^2 ",
+        "cell length: R^2 ",
+        "division rate: R^2 ",
+        "radius over the first 1.2 mm: ",
+    ):
+        assert line in done.stdout, done.stdout
+    missing = growth_curves(project, tmp_path)
+    assert missing.returncode == 1 and "no picture of" in missing.stderr and "Traceback" not in missing.stderr
+
+
+def test_growth_curves_measure_what_cells_have(grown: Path):
+    run = Run(grown)
+    frames = [run.frame(index) for index in range(len(run.times_h))[-OUTPUTS:]]
+    place = float(np.median(frames[-1]["distance_to_tip"]))
+    near = [np.abs(f["distance_to_tip"] - place) <= HALF_WIDTH_MM["cell_length"] for f in frames]
+    expected = [1e3 * f.axial_lengths(2)[n].mean() for f, n in zip(frames, near) if n.any()]
+    lengths = curve(run, "cell_length", np.array([place]))
+    assert lengths.mean()[0] == pytest.approx(np.mean(expected))
+    assert lengths.standard_error()[0] == pytest.approx(np.std(expected) / np.sqrt(len(expected)))
+    assert len(curve(run, "division_rate", np.array([place])).values) == len(run.times_h) - 1
 
 
 FAKE_PROGRAM = """#!/usr/bin/python3
