@@ -195,12 +195,11 @@ void refuse_hasty_division(const Scene& scene, const Tissue<Dim>& tissue) {
   }
   if (divided <= most_times * cells) return;
   scene.origins.fail(
-      "division.l0_mm",
+      division->table.empty() ? "division.l0_mm" : "division.table",
       fmt::format("the {:.0f} cells that can move would divide into some {:.1e} at once", cells, divided),
-      fmt::format("l0_mm = {}: a cell {:.3g} mm long is {:.3g} times longer than the threshold at its place",
-                  division->l0_mm, longest_mm, worst),
+      fmt::format("a cell {:.3g} mm long, {:.3g} times longer than the threshold at its place", longest_mm, worst),
       fmt::format("a threshold that makes at most {} cells of one", most_times),
-      "is l0_mm in mm? Give a threshold near the length of the cells at the start, or start with smaller cells");
+      "is the threshold in mm? Give one near the length of the cells at the start, or start with smaller cells");
 }
 
 template void refuse_torn_lattice<2>(const Scene&, const Tissue<2>&);

@@ -39,7 +39,7 @@ def coarse(cell_size_mm: float, divides_at_mm: float) -> tuple[str, ...]:
 
 
 AT_REST = Family(0.32)
-ARABIDOPSIS = Family(0.5, coarse(0.021, 0.018))
+ARABIDOPSIS = Family(0.5, ("root.cell_size_mm=0.021",))
 PEA = Family(2.0, coarse(0.16, 0.12))
 GRAINS = Family(0.1, plate=True)
 FAMILIES = {

@@ -148,7 +148,7 @@ TEST(HastyDivision, ThresholdInMetresIsRefused) {
     expect_part(problem.what, "would divide into some");
     expect_part(problem.given, "times longer than the threshold at its place");
   }
-  expect_part(lattice_refusal<3>({"division.l0_mm=4e-3"}).remedy, "is l0_mm in mm?");
+  expect_part(lattice_refusal<3>({"division.l0_mm=4e-3"}).remedy, "is the threshold in mm?");
 }
 
 TEST(HastyDivision, OneDivisionAlongEachAxisIsAllowed) {

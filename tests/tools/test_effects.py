@@ -59,5 +59,6 @@ def test_sleep_pays(project: Path, tmp_path: Path):
     history = tool.Run(tmp_path / "work" / "asleep").history()
     assert history["cells_at_rest"][-1] > 0.4 * history["cells"][-1]  # .447
     lengths = [tool.Run(tmp_path / "work" / name).history()["length_mm"][-1] for name in ("awake", "asleep")]
-    assert lengths[1] == pytest.approx(lengths[0], rel=3.6e-6)  # 1.8e-6
+    # Cells of unequal length leave stresses that would bend mature tissue a little further: asleep, it is held.
+    assert lengths[1] == pytest.approx(lengths[0], rel=2.1e-4)  # 1.07e-4
     assert "| pair resistance |" in (tmp_path / "out" / "effects.md").read_text(encoding="utf-8")
