@@ -93,7 +93,7 @@ Json examine(const Scene& scene) {
   for (const auto& [name, unused] : solver.clock().seconds()) phases.push_back(name);
   const auto& terms = solver.pair_terms();
   const std::size_t pair_bytes = sizeof(Pair) + sizeof(PairGradient<Dim>) + sizeof(double) +
-                                 (terms.any() ? sizeof(double) : 0) + (terms.non_affine ? sizeof(Vec<Dim>) : 0) +
+                                 (terms.any() ? sizeof(double) : 0) + (terms.non_affine ? sizeof(PairSlip<Dim>) : 0) +
                                  (terms.non_affine && tissue.material.softening ? sizeof(double) : 0);  // retention
   const double pairs = static_cast<double>(tissue.pairs.pairs.size());
   const PresetRecord record = preset_record(scene.numerics.accuracy);

@@ -103,7 +103,12 @@ SCENES: dict[str, tuple[str, tuple[str, ...]]] = {
     ),
     "division threshold in metres": (
         SMALL + SECTIONS["division"].replace("0.011", "1.1e-5"),
-        ("scene.toml:17: division.l0_mm: ", "would divide into some", "given:   l0_mm = 1.1e-05", "is l0_mm in mm?"),
+        (
+            "scene.toml:17: division.l0_mm: ",
+            "would divide into some",
+            "times longer than the threshold at its place",
+            "is the threshold in mm?",
+        ),
     ),
     "obstacle in the root": (
         SMALL + '[[obstacle]]\nshape = "disc"\nposition_mm = [0.05, 0.0]\nradius_mm = 0.01\n',

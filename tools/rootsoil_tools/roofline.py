@@ -44,27 +44,28 @@ def gradient_loop(n: int) -> Loop:
 
 
 def force_loop(n: int, damped: bool) -> Loop:
-    """add_forces in n dimensions with non-affine control and growth; with inertia it is damped, and the slip that is
-    kept creeps in every pass."""
+    """resist_slips and add_stress_forces in n dimensions, with growth; with inertia slips are damped, and kept in every
+    pass."""
     product = n * (2 * n - 1)
     operations = (
-        2 * product + n  # A_i g_ij - A_j g_ji
-        + n  # du
-        + n  # r, from where the window began
-        + n * n + product + 2 * n  # v = du - (L_i + L_j) r/2
-        + 4 * n  # slip that is used, slip that is kept
-        + (2 * n if damped else n)  # both creep, or one
-        + 2 * n  # stiffness
-        + (2 + 2 * n if damped else 0)  # damping
-        + 2 * n  # weight
+        2 * n  # r, from where the window began, and du
+        + 2 * (product + n)  # v_i, v_j
+        + 4  # stiffness, and times the step
+        + (5 if damped else 0)  # damping
+        + 6 * n  # f_i, f_j
+        + (6 * n if damped else 0)  # slips that are kept
+        + 3 * n  # f_i + f_j onto i and j
+        + 4 * n * n  # their moments onto i and j
+        + 2 * product + n  # A_i g_ij - A_j g_ji
         + 2 * n  # onto i and j
     )  # fmt: skip
     vector, matrix = n * REAL, n * n * REAL
     return Loop(
         operations,
-        bytes_of_pair=INDEX_PAIR + 2 * vector + 2 * REAL + 2 * vector,  # g_ij, g_ji; weight, retention; slip in and out
-        # nominal force and gradient; velocity, start, force in and out; damping
-        bytes_of_cell=ROW + 2 * matrix + 4 * vector + (REAL if damped else 0),
+        # twice the cells; g_ij, g_ji; weight, retention; two slips in, and out where they are kept
+        bytes_of_pair=2 * INDEX_PAIR + 2 * vector + 2 * REAL + (4 if damped else 2) * vector,
+        # nominal force, in and out and in, and gradient; velocity, start; force, in and out twice; damping
+        bytes_of_cell=2 * ROW + 4 * matrix + 6 * vector + (REAL if damped else 0),
     )
 
 
