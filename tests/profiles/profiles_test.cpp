@@ -142,5 +142,14 @@ TEST(Response, GoesOnBeyondItsSetsOrStops) {
   EXPECT_EQ(responded(pair, p_MPa, 0.75, false), 2.0);
 }
 
+TEST(Profiles, ATableOfSofteningIsLinearBetweenItsRows) {
+  GrowthSection growth;
+  growth.table = {{0.1, 1e5}, {0.3, 3e5}, {0.5, 0.0}};
+  for (const auto& [s, lambda] :
+       {std::pair{0.0, 1e5}, {0.1, 1e5}, {0.2, 2e5}, {0.45, 0.75e5}, {0.5, 0.0}, {2.0, 0.0}}) {
+    EXPECT_NEAR(softening_ug_mm3_h(growth, s), lambda, 1e-8);
+  }
+}
+
 }  // namespace
 }  // namespace rootsoil
