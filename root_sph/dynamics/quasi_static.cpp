@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "root_sph/core/cell_size.hpp"
 #include "root_sph/dynamics/mixing.hpp"
 
 namespace rootsoil {
@@ -148,7 +149,7 @@ class Search {
         faces_(places_) {
     for (Eigen::Index p = 0; p < places_; ++p) {
       x_.segment<Dim>(p * Dim) = displacement[free.cell[p]];
-      sizes_[p] = std::pow(tissue_.cells.volume[free.cell[p]], 1.0 / Dim);
+      sizes_[p] = cell_size_mm<Dim>(tissue_.cells.volume[free.cell[p]]);
       faces_[p] = tissue_.cells.volume[free.cell[p]] / sizes_[p];
     }
     built_ = !method.id.empty();
@@ -367,7 +368,8 @@ class Search {
       if (cells.clamped[i]) section += std::pow(cells.volume[i], (Dim - 1.0) / Dim);
     }
     const double now = thrust();
-    if (now <= least_thrust * stress_scale<Dim>(tissue_) * section) return false;
+    balance_.thrust = section > 0.0 ? now / (stress_scale<Dim>(tissue_) * section) : 0.0;
+    if (balance_.thrust <= least_thrust) return false;
     return fresh_ || !balance_.found || restless_ || stability_.stiffness < ample_stiffness ||
            now > much_more_thrust * stability_.thrust || stability_.steps >= most_unwatched_steps;
   }

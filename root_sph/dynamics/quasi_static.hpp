@@ -19,7 +19,8 @@ struct Balance {
   double imbalance = 0.0;      ///< rms over free cells of |f|/(p x its face); the tissue's stress for p if more
   std::size_t worst_cell = 0;  ///< the one with the largest
   double worst_imbalance = 0.0;
-  bool stable = true;  ///< a small push does not end it
+  bool stable = true;   ///< a small push does not end it
+  double thrust = 0.0;  ///< on the held base, against the root's growth, over p times the held cells' faces
 };
 
 /// Solves f(d) = 0 by a quasi-Newton iteration: d += M^-1 f, M from the stiffness at the predictor, improved by

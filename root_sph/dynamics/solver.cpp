@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "root_sph/dynamics/motion.hpp"
 #include "root_sph/dynamics/stability.hpp"
@@ -228,9 +229,9 @@ void Solver<Dim>::end_window() {
 }
 
 /// The displacement of the window at which all forces balance; the cells end there. False: there is none that can be
-/// found, and the cells are where they were.
+/// found, or the thrust changes by more than it may, and the cells are where they were.
 template <int Dim>
-bool Solver<Dim>::find_balance(bool downhill) {
+bool Solver<Dim>::find_balance(bool downhill, double most_thrust_change) {
   auto& cells = tissue_.cells;
   const double dt = window_h_;
   const std::vector<Vec<Dim>> start(cells.position.values().begin(),
@@ -271,7 +272,7 @@ bool Solver<Dim>::find_balance(bool downhill) {
         {tissue_, terms_, dt, options_.force_tolerance, evaluate, contact, adapt_friction, downhill}, displacement);
   });
   effort_.balance_iterations += balance_.iterations;
-  if (!balance_.found) {
+  if (!balance_.found || std::abs(balance_.thrust - thrust_) > most_thrust_change) {
     std::copy(start.begin(), start.end(), cells.position.values().begin());
     std::copy(velocity.begin(), velocity.end(), cells.velocity.values().begin());
     return false;
@@ -279,19 +280,29 @@ bool Solver<Dim>::find_balance(bool downhill) {
   place(displacement);
   clock_.measure("material", [&] { update_material_(tissue_, dt); });
   evaluate_forces({dt, dt});
+  thrust_ = balance_.thrust;
   return true;
 }
 
 /// A step without inertia, in parts where its balance cannot be found in one: halves, quarters, ... Each is a window.
+/// So too where a growing root meets something that pushes back: thrust rises as fast as the tissue's stiffness lets it,
+/// and strain comes at no constant rate in such a step.
 template <int Dim>
 void Solver<Dim>::quasi_static_step() {
-  constexpr int most_halvings = 10, most_easy_halvings = 2;
+  constexpr int most_halvings = 10, most_easy_halvings = 2, most_halvings_for_thrust = 4;
+  constexpr double most_thrust_change = 0.1;  // of p times the section
   constexpr std::int64_t whole = std::int64_t{1} << most_halvings;
   const double step_h = tissue_.step_h, start_h = tissue_.time_h;
   std::int64_t done = 0;
   int level = 0;
   imbalance_ = 0.0;
+  const bool can_meet = tissue_.material.softening && !hooks_.contact_stiffness.empty();
   while (done < whole) {
+    const auto balanced = [&] {
+      const bool watches = can_meet && level < most_halvings_for_thrust;
+      return find_balance(level >= most_easy_halvings,
+                          watches ? most_thrust_change : std::numeric_limits<double>::infinity());
+    };
     const auto choose = [&] {
       tissue_.step_h = window_h_ = std::ldexp(step_h, -level);
       tissue_.time_h = start_h + step_h * static_cast<double>(done + (whole >> level)) / static_cast<double>(whole);
@@ -299,7 +310,7 @@ void Solver<Dim>::quasi_static_step() {
     choose();
     begin_window();
     Hooks<Dim>::run(hooks_.step_loads, clock_, tissue_);
-    while (!find_balance(level >= most_easy_halvings)) {
+    while (!balanced()) {
       if (++level > most_halvings) {
         tissue_.step_h = step_h;
         const std::size_t i = balance_.worst_cell;
@@ -378,6 +389,7 @@ void Solver<Dim>::save(std::map<std::string, std::vector<double>>& reals,
                        std::map<std::string, std::vector<std::int64_t>>& integers) const {
   reals["solver/axis"] = axis_.save();
   reals["solver/shortest_step_h"] = {shortest_step_h_};
+  reals["solver/thrust"] = {thrust_};
   if (!tissue_.inertia) quasi_static_.save(reals, integers);
   integers["solver/counters"] = {steps_,
                                  tissue_.next_cell_id,
@@ -405,6 +417,7 @@ void Solver<Dim>::restore(const std::map<std::string, std::vector<double>>& real
                           const std::map<std::string, std::vector<std::int64_t>>& integers) {
   axis_.restore(reals.at("solver/axis"));
   shortest_step_h_ = reals.at("solver/shortest_step_h").at(0);
+  thrust_ = reals.at("solver/thrust").at(0);
   if (!tissue_.inertia) quasi_static_.restore(reals, integers);
   const auto& counters = integers.at("solver/counters");
   steps_ = counters.at(0);

@@ -86,7 +86,7 @@ class Solver {
   void predictor_corrector_step();
   void choose_inertia();
   void quasi_static_step();
-  bool find_balance(bool downhill);
+  bool find_balance(bool downhill, double most_thrust_change);
   void end_window();
   void check_physical() const;
 
@@ -103,6 +103,7 @@ class Solver {
   QuasiStatic<Dim> quasi_static_;
   Balance balance_;
   double imbalance_ = 0.0, shortest_step_h_ = 0.0;
+  double thrust_ = 0.0;  ///< at the latest balance, Balance::thrust
   double window_h_ = 0.0;
   std::int64_t steps_ = 0;
   Effort effort_;

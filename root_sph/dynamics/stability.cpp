@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "root_sph/core/cell_size.hpp"
+
 namespace rootsoil {
 namespace {
 
@@ -114,7 +116,7 @@ void set_inertia(Tissue<Dim>& tissue, PairTerms<Dim>& terms, const std::vector<V
     for (std::size_t i = 0; i < n; ++i) {
       // sqrt(E M/V) V^(1/Dim): the impedance of a cell
       (*terms.damping)[i] = 0.5 * std::sqrt(tissue.material.E_axial_MPa * inertia[i][0] / cells.volume[i]) *
-                            std::pow(cells.volume[i], 1.0 / Dim);
+                            cell_size_mm<Dim>(cells.volume[i]);
     }
     for_each_block(tissue.pairs, [&](const PairBlock& block) {
       for (std::int64_t k = block.first_pair; k < block.last_pair; ++k) {

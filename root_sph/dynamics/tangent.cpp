@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "root_sph/dynamics/material_update.hpp"
+#include "root_sph/tissue/relaxation.hpp"
 
 namespace rootsoil {
 namespace {
@@ -62,7 +63,7 @@ void CellStiffness<Dim>::find(std::size_t i, std::span<const typename Stencils<D
   // F of the step's end, at the displacement that the tissue has now
   const Mat<Dim> deformation = tissue_.deformation[i] + dt_h_ * tissue_.velocity_gradient[i];
   const double growth = material.softening ? dt_h_ * (*material.softening)[i] / material.rho0_ug_mm3 : 0.0;
-  const double factor = std::sqrt(cells.volume[i] * deformation.determinant() / (1.0 + growth));
+  const double factor = std::sqrt(cells.volume[i] * deformation.determinant() * relaxation(growth).gained);
   const VoigtMat<Dim> elastic = elastic_tangent<Dim>(material.stiffness_of(i));
   const VoigtMat<Dim> root = factor * VoigtMat<Dim>(elastic.llt().matrixU());
   const Mat<Dim> frame = step_rotation<Dim>(deformation - Mat<Dim>::Identity()) * cells.frame[i];

@@ -50,8 +50,8 @@ void multiply(const Eigen::Matrix<double, Rows, Inner>& factor, const NodeRows<I
 
 /// One cell's share of the stiffness matrix K = sum_i (W_i^T W_i + P_i (x) 1), over the nodes of its stencil.
 ///
-/// W^T W = V det F B^T C B/(1 + dt lambda/rho0): of the stress, with the operators carried along by F. P is of the pair
-/// resistance, c w/2 |d_j - d_i - G_i r|^2 of each neighbour.
+/// W^T W = V det F B^T C B (1 - e^-x)/x, x = dt lambda/rho0: of the stress, with the operators carried along by F. P is
+/// of the pair resistance, c w/2 |d_j - d_i - G_i r|^2 of each neighbour.
 template <int Dim>
 class CellStiffness {
  public:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "root_sph/core/cell_size.hpp"
 #include "root_sph/core/errors.hpp"
 
 namespace rootsoil {
@@ -15,7 +16,7 @@ double median_cell_size_mm(std::span<const double> volume) {
   ROOTSOIL_ASSERT(!sorted.empty());
   const auto middle = sorted.begin() + std::ssize(sorted) / 2;
   std::nth_element(sorted.begin(), middle, sorted.end());
-  return std::pow(*middle, 1.0 / Dim);
+  return cell_size_mm<Dim>(*middle);
 }
 
 template <int Dim>

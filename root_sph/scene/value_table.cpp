@@ -16,6 +16,10 @@ double value_at(const Rows& table, double x) {
 }
 
 void check_increasing(const Rows& table, const std::string& key, const std::string& name, const Origins& origins) {
+  if (!table.empty() && table.front()[0] < 0.0) {
+    origins.fail(key, fmt::format("the {} begin below 0", name), fmt::format("{}", table.front()[0]), name + " from 0",
+                 "begin with the value at 0");
+  }
   for (std::size_t i = 1; i < table.size(); ++i) {
     if (table[i - 1][0] < table[i][0]) continue;
     origins.fail(key, fmt::format("the {} do not increase", name),

@@ -12,7 +12,7 @@ namespace rootsoil {
 /// \param table rows (x, value), x increasing; not empty
 double value_at(const Rows& table, double x);
 
-/// InputError where the first numbers of a key's rows do not increase.
+/// InputError where the first numbers of a key's rows do not increase from 0 on.
 /// \param name of those numbers: times, distances
 void check_increasing(const Rows& table, const std::string& key, const std::string& name, const Origins& origins);
 

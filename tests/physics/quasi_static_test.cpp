@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Steps that end in balance, against exact answers: the same problems as with inertia, and those that inertia spoils.
+#include <fmt/format.h>
+
 #include "bending.hpp"
 #include "growth.hpp"
 #include "strain.hpp"
@@ -202,6 +204,26 @@ TEST(QuasiStatic, FarBeyondEulersLoadAColumnIsBent) {
         fmt::format("{} across under {} times in {} h: tip across over the elastica's - 1", across, load, grows_for_h),
         tip_over_elastica(across, load, grows_for_h, grows_for_h < 0.1 ? 0.1 : 1.0) - 1.0);
   }
+}
+
+/// A force that follows the tip (force.axial_N), at twice the load at which a weight would bend the column: a push F from
+/// the side bends it by F/P (sin(b)/b - cos(b)) l, b = pi/2 sqrt(P/P_Euler), less than without it. From
+/// E I w'' = P (w_l - w) + (F - P w_l') (l - x), Beck's column without its inertia (Timoshenko & Gere, 2.21).
+TEST(QuasiStatic, AColumnUnderAForceThatFollowsItsTipStands) {
+  constexpr int across = 12;
+  constexpr double lateral_N = 1e-5;
+  const std::string text = beam_case(2, across);
+  const BeamResult plain = bend<2>(text, balanced_steps({"numerics.step_h=1"}), lateral_N);
+  const double size_mm = beam_depth_mm / across, held_to_load_mm = plain.load_at_mm + 0.25 * size_mm;
+  const double load_N = 2.0 * euler_load(plain.section, held_to_load_mm);
+  const BeamResult pressed =
+      bend<2>(text + fmt::format("[force]\naxial_N = {}\ndistance_to_tip_mm = [0, {}]\n", load_N, 1.1 * size_mm),
+              balanced_steps({"numerics.step_h=1"}), lateral_N);
+  const double b = 0.5 * std::numbers::pi * std::sqrt(2.0);
+  const double theory = 3.0 * (std::sin(b) - b * std::cos(b)) / (b * b * b);
+  record("deflection/deflection without it", pressed.deflection_mm / plain.deflection_mm);
+  expect_within_record("deflection with over without it, over theory - 1",
+                       pressed.deflection_mm / plain.deflection_mm / theory - 1.0);
 }
 
 /// A root that runs into a wall is stopped by p (1 - nu_A) W, and hardly more at any time. W goes on growing: it is the

@@ -36,6 +36,16 @@ bool is_in_band(const ForceSection& force, double s_mm) {
   return s_mm >= force.distance_to_tip_mm[0] && s_mm <= force.distance_to_tip_mm[1];
 }
 
+/// The axis of a cell, where a balance is looked for turned since the step's start: a force that follows it has no
+/// potential, and a column under it stands where a weight of the same size would bend it (Beck's column).
+template <int Dim>
+Vec<Dim> axis_now(const Tissue<Dim>& tissue, std::size_t cell, SlipAdvance advance) {
+  const Vec<Dim> axis = tissue.cells.frame[cell].col(0);
+  const double ahead_h = advance.used_h - advance.kept_h;
+  if (ahead_h == 0.0) return axis;
+  return step_rotation<Dim>(ahead_h * tissue.velocity_gradient[cell] * tissue.deformation[cell].inverse()) * axis;
+}
+
 /// A band without a cell that could move. Later, when the root has changed, the run stops there.
 template <int Dim>
 void refuse_empty_band(const Scene& scene, const Tissue<Dim>& tissue) {
@@ -92,22 +102,18 @@ ForceEffect<Dim>::ForceEffect(Solver<Dim>& solver, ForceSection force) : force_(
     }
     for (double& w : weight_) w /= volume;
   });
-  solver.hooks().forces.emplace_back("force", [this](Tissue<Dim>& t, SlipAdvance) {
+  solver.hooks().forces.emplace_back("force", [this](Tissue<Dim>& t, SlipAdvance advance) {
     const double factor = force_.table.empty() ? 1.0 : value_at(force_.table, t.time_h);
     applied_N_.setZero();
     for (std::size_t k = 0; k < loaded_.size(); ++k) {
-      const Vec<Dim> share = share_N(t.cells, k, factor);
-      t.force[loaded_[k]] += share;
+      const std::size_t i = loaded_[k];
+      const Vec<Dim> whole = force_.axial_N ? Vec<Dim>(-*force_.axial_N * axis_now<Dim>(t, i, advance))
+                                            : shortened<Dim>(*force_.vector_N);
+      const Vec<Dim> share = factor * weight_[k] * whole;
+      t.force[i] += share;
       applied_N_ += share;
     }
   });
-}
-
-template <int Dim>
-Vec<Dim> ForceEffect<Dim>::share_N(const ParticleStore<Dim>& cells, std::size_t k, double factor) const {
-  const Vec<Dim> whole =
-      force_.axial_N ? Vec<Dim>(-*force_.axial_N * cells.frame[loaded_[k]].col(0)) : shortened<Dim>(*force_.vector_N);
-  return factor * weight_[k] * whole;
 }
 
 template <int Dim>

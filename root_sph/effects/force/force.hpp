@@ -23,8 +23,6 @@ class ForceEffect final : public Effect<Dim> {
   std::vector<std::pair<std::string, double>> history() const override;
 
  private:
-  Vec<Dim> share_N(const ParticleStore<Dim>& cells, std::size_t k, double factor) const;
-
   ForceSection force_;
   std::vector<std::size_t> loaded_;  ///< cells of the band, in the window under way
   std::vector<double> weight_;       ///< of each; together 1

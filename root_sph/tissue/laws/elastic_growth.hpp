@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "root_sph/tissue/laws/law.hpp"
+#include "root_sph/tissue/relaxation.hpp"
 
 namespace rootsoil {
 
@@ -29,19 +30,24 @@ struct ElasticGrowth {
   static constexpr std::array<LawColumn, 0> columns{};
   using State = LawState<Dim, columns.size()>;
 
-  /// Implicit in the growth term: sigma - b 1 <- (sigma + C : strain - b 1)/(1 + dt lambda/rho0). Where b = pi, the
-  /// step leaves pi as it is.
+  /// Exact where strain comes at a constant rate. sigma = pi 1 + s, and C : strain likewise: the shape's part s always
+  /// relaxes, the volume's where pi > Y.
   static void step(const LawStep<Dim>& s, State& cell) {
-    cell.stress += elastic_stress<Dim>(s.stiffness, s.strain);
-    if (s.lambda_ug_mm3_h <= 0.0) return;
-    const double bulk = bulk_modulus<Dim>(s.stiffness), tension = volume_strain<Dim>(s.stiffness, cell.stress);
-    const double growth = s.dt_h * s.lambda_ug_mm3_h / s.rho0_ug_mm3, kept = std::min(s.yield_MPa, bulk * tension);
-    auto normal = cell.stress.template head<Dim>().array();
-    normal -= kept;
-    cell.stress /= 1.0 + growth;
-    normal += kept;
-    const double beyond = tension - s.yield_MPa / bulk;
-    if (beyond > 0.0) cell.mass *= std::exp(growth * beyond / (1.0 + growth));  // strains add up, so masses multiply
+    const Voigt<Dim> elastic = elastic_stress<Dim>(s.stiffness, s.strain);
+    if (s.lambda_ug_mm3_h <= 0.0) {
+      cell.stress += elastic;
+      return;
+    }
+    const double relaxed_times = s.dt_h * s.lambda_ug_mm3_h / s.rho0_ug_mm3;
+    const auto [kept, gained] = relaxation(relaxed_times);
+    const double bulk = bulk_modulus<Dim>(s.stiffness), yield = s.yield_MPa / bulk,
+                 tension = volume_strain<Dim>(s.stiffness, cell.stress) - yield,
+                 strain = volume_strain<Dim>(s.stiffness, elastic);
+    const double tension_after = relaxed_tension(tension, strain, relaxed_times);
+    cell.stress = kept * cell.stress + gained * elastic;
+    cell.stress.template head<Dim>().array() +=
+        bulk * (tension_after + yield - kept * (tension + yield) - gained * strain);
+    cell.mass *= std::exp(tension + strain - tension_after);  // strains add up, so masses multiply
   }
 
   static VoigtMat<Dim> tangent(const Stiffness<Dim>& k) { return elastic_tangent<Dim>(k); }
