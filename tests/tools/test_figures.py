@@ -13,12 +13,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from growth_curves import HALF_WIDTH_MM, OUTPUTS, curve
 from matplotlib import pyplot as plt
 from overview import draw_contact, percent
 from synthetic import make_growing_run, make_strained_run
 
 from rootsoil_tools import measure, published
+from rootsoil_tools.kinematics import HALF_WIDTH_MM, OUTPUTS, curve
 from rootsoil_tools.runs import Frame, Run, RunError
 from rootsoil_tools.theory import growth_ends
 
