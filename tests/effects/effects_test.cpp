@@ -245,8 +245,8 @@ TYPED_TEST(Effects, DivisionCutsFreeCellsLongerThanTheThresholdOnce) {
   EXPECT_EQ(cells.size(), before + 4);
 }
 
-/// Cells that grow alike and divide at thresholds of their own, for twelve generations: their mean length is that of the
-/// closed form. They begin evenly over the logarithm of their length, as they do not stay where thresholds differ.
+/// Cells that grow alike and divide at thresholds of their own, for twelve generations: their mean length is that of
+/// the closed form. They begin evenly over the logarithm of their length, as they do not stay where thresholds differ.
 TEST(Division, MeanLengthOfASteadyPopulationIsTheClosedForms) {
   for (const double scatter : {0.1, 0.3}) {
     const DivisionSection section{.l0_mm = 1.0, .scatter = scatter};

@@ -64,8 +64,9 @@ def read_numbers(path: Path) -> dict[str, Number]:
     """By their key."""
     with path.open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    floats = {f.name for f in fields(Number) if f.type == "float"}
-    return {row["key"]: Number(**{k: float(v or "nan") if k in floats else v for k, v in row.items()}) for row in rows}
+    types: dict[str, Callable] = {"float": lambda text: float(text or "nan"), "str": str}
+    numbers = [Number(**{f.name: types[str(f.type)](row[f.name]) for f in fields(Number)}) for row in rows]
+    return {number.key: number for number in numbers}
 
 
 @dataclass(frozen=True)
@@ -190,14 +191,12 @@ def pea(bench: Bench) -> Iterator[Number]:
 
 
 def _dividing_length_mm(run: Run) -> float:
-    """Mean length of cells in the second quarter of the growth zone, where all have divided often, at the last outputs."""
+    """Mean length of cells in the second quarter of the growth zone, where all have divided often, at the end."""
     last = run.frame(-1)
     zone = last.closed_form.growth_zone(float(last["distance_to_tip"].max()))
     at_mm = np.linspace(0.25 * zone, 0.5 * zone, 21)
-    return (
-        float(np.nanmean(measure.near_points(run, run.window(measure.WINDOW_H), "cell_length", at_mm, 0.02 * zone)))
-        / 1e3
-    )
+    lengths_um = measure.near_points(run, run.window(measure.WINDOW_H), "cell_length", at_mm, 0.02 * zone)
+    return float(np.nanmean(lengths_um)) / 1e3
 
 
 def _printed_bells(bench: Bench, members: dict, hours: float) -> Iterator[Number]:

@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-
-from PIL import Image
 
 from rootsoil_tools import draw
 from rootsoil_tools.pages import table
@@ -35,20 +34,20 @@ PAGE = """<!-- SPDX-License-Identifier: MIT -->
 # Published numbers beside ours
 
 `tools/validation.py` runs the scenes, writes [validation.csv](validation.csv) and draws this page from it. Published
-numbers and their sources are in `tools/data/`.
+numbers and their sources are in `tools/data/`. Ten minutes beside other programs.
 
 {summary}
 
-A number **agrees** in the published range or within {within:.0f} % of it, a relative error if it is at most {within:.0f} %,
-a curve if its R² is at least {r2:g}. These are the only thresholds. What ours is:
+A number **agrees** in the published range or within {within:.0f} % of it, a relative error up to {within:.0f} %,
+a curve from R² = {r2:g} on. These are the only thresholds. What ours is:
 
 - **predicted**: nothing was set by the published number; this alone is validation;
 - **fitted**: the scene was made to have it, or it follows from curves that were: its verdict is "fitted to it" at best.
   **Taken over**: an input, as the paper has it;
 - **theory**: compared with an independent closed form, not with data.
 
-The means of several runs have their range behind them. "Recorded": a run too long for this tool, as a document of this
-project has it.
+The means of several runs have their range behind them. "Recorded": of a run too long for
+this tool, as `tools/data/recorded_runs.csv` or another file of the project has it.
 
 ![Ours over the published number, for all numbers that can be compared](images/{picture}.png)
 
@@ -77,9 +76,9 @@ def ours_text(row: Row, found: Number | None) -> str:
     """The number with its range."""
     if found is None or math.isnan(found.value):
         return row.ours or "-"
-    shown = "{:.4g}".format if row.measure == "R^2" else digits
-    spread = f" ({shown(found.low)} to {shown(found.high)})" if found.high > found.low else ""
-    return shown(found.value) + spread
+    all_three = (found.value, found.low, found.high)
+    value, low, high = (f"{v:.4g}" if row.measure == "R^2" else digits(v) for v in all_three)
+    return f"{value} ({low} to {high})" if low != high else value
 
 
 def how_text(row: Row, found: Number | None) -> str:
@@ -108,7 +107,7 @@ def summary(rows: Sequence[tuple[Row, Number | None, str]]) -> str:
     counts = ", ".join(f"{name} {verdict_of.count(name)}" for name in VERDICTS if name in verdict_of)
     predicted = [judged for row, _, judged in rows if row.origin == PREDICTED and judged in (AGREES, DISAGREES)]
     agree = f"Of the {len(predicted)} that are predicted, {predicted.count(AGREES)} agree."
-    return f"**{len(rows)} rows: {counts}. {agree}**"
+    return textwrap.fill(f"**{len(rows)} rows: {counts}. {agree}**", 120, break_on_hyphens=False)
 
 
 def page(numbers: Mapping[str, Number]) -> str:
@@ -178,7 +177,6 @@ def draw_ratios(numbers: Mapping[str, Number], path: Path) -> None:
     figure.legend(handles=handles, loc="upper center", ncol=4, frameon=False, bbox_to_anchor=(0.5, 1.0))
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=draw.DOTS_PER_INCH)
-    Image.open(path).convert("RGB").quantize(128).save(path, optimize=True)
 
 
 def _ends(row: Row, found: Number) -> list[float]:

@@ -239,24 +239,42 @@ def video_rows() -> list[Row]:
 
     def video(
         name: str, quantity: str, key: str, source: str, origin: str = PREDICTED, apart: str = "", note: str = ""
-    ):
+    ) -> Row:
         return Row(VIDEOS, f"{name}: {quantity}", key, (source, name), origin, apart=apart, note=note)
 
     start = "their length at the start is not printed"
     return [
-        video("S1", "volume after 50 h over the first", "arabidopsis S1 volume ratio", "volume over the first after 50 h",
-              apart=start),
-        video("S1", "divisions of a cell in 50 h", "arabidopsis S1 divisions", "divisions of a cell in 50 h", apart=start),
+        video(
+            "S1",
+            "volume after 50 h over the first",
+            "arabidopsis S1 volume ratio",
+            "volume over the first after 50 h",
+            apart=start,
+        ),
+        video(
+            "S1", "divisions of a cell in 50 h", "arabidopsis S1 divisions", "divisions of a cell in 50 h", apart=start
+        ),
         Row(VIDEOS, "S2: two pressure differentials", note="no number is printed; ours is Fig. 5's series"),
         video("S3", "cells at the end", "S3 cells", "cells at the end", CALIBRATED, note="55 h, from 45,344 (45,000)"),
         video("S3", "elongation (mm)", "S3 elongation", "elongation", CALIBRATED),
-        video("S3", "generations", "S3 generations", "generations",
-              note="divisions; eight generations, if the first cells are one"),
+        video(
+            "S3",
+            "generations",
+            "S3 generations",
+            "generations",
+            note="divisions of the cell that divided most; with the first cells these are eight generations",
+        ),
         video("S4", "cells at the end", "S4 cells", "cells at the end", CALIBRATED, note="30 h, from 2,036 (2,000)"),
-        video("S4", "elongation (mm)", "S4 elongation", "elongation", CALIBRATED,
-              note="among grains, which the paper's has not"),
-        Row(VIDEOS, "S4: generations", source=("generations", "S4"), apart="not recorded of the run"),
-    ]  # fmt: skip
+        video(
+            "S4",
+            "elongation (mm)",
+            "S4 elongation",
+            "elongation",
+            CALIBRATED,
+            note="among grains, which the paper's has not",
+        ),
+        video("S4", "generations", "S4 generations", "generations", note="divisions of the cell that divided most"),
+    ]
 
 
 def push_rows() -> list[Row]:
@@ -284,39 +302,95 @@ def push_rows() -> list[Row]:
     return [
         *rows,
         Row(PUSH, f"{left}; no yield stress", "left after 100 mN, no yield", push, note="p = 1 MPa"),
-        Row(PUSH, "growth pressure, dicots; uniform Y (MPa)", "growth pressure, uniform yield", (PRESSURE, "dicots"), CALIBRATED,
-            note=f"chosen for it: {uniform}"),
-        Row(PUSH, f"{left}; uniform Y", "left after 100 mN, uniform yield", push, note=f"{uniform}, chosen for the pressure only"),
-        Row(PUSH, "growth pressure, pea; rising Y (MPa)", "growth pressure, rising yield", (PRESSURE, "pea"), CALIBRATED,
-            note=BOTH_YIELD),
+        Row(
+            PUSH,
+            "growth pressure, dicots; uniform Y (MPa)",
+            "growth pressure, uniform yield",
+            (PRESSURE, "dicots"),
+            CALIBRATED,
+            note=f"chosen for it: {uniform}",
+        ),
+        Row(
+            PUSH,
+            f"{left}; uniform Y",
+            "left after 100 mN, uniform yield",
+            push,
+            note=f"{uniform}, chosen for the pressure only",
+        ),
+        Row(
+            PUSH,
+            "growth pressure, pea; rising Y (MPa)",
+            "growth pressure, rising yield",
+            (PRESSURE, "pea"),
+            CALIBRATED,
+            note=BOTH_YIELD,
+        ),
         Row(PUSH, f"{left}; rising Y", "left after 100 mN, rising yield", push, CALIBRATED, note="the same"),
         *[
-            Row(PUSH, f"{what}, {name}: relative error", f"{what} error, {name} yield", None, EXACT, "error",
-                "against the closed form of docs/decisions/0024")
+            Row(
+                PUSH,
+                f"{what}, {name}: relative error",
+                f"{what} error, {name} yield",
+                None,
+                EXACT,
+                "error",
+                "against the closed form of docs/decisions/0024",
+            )
             for what in ("growth pressure", "left after 100 mN")
             for name in ("no", "uniform")
         ],
-        Row(PUSH, "Young's modulus of the root (MPa)", "pea Young's modulus", ("Young's modulus of the root", "poplar"),
+        Row(
+            PUSH,
+            "Young's modulus of the root (MPa)",
+            "pea Young's modulus",
+            ("Young's modulus of the root", "poplar"),
             INPUT,
-            note="Table 1's is taken over; with growth alike, Euler loads go as it"),
-    ]  # fmt: skip
+            note="Table 1's is taken over; with growth alike, Euler loads go as it",
+        ),
+    ]
 
 
 def other_rows() -> list[Row]:
     """Buckling and soil."""
     probe = ("penetrometer resistance over root resistance", "various")
     return [
-        Row(BUCKLING, "Euler load of a column: relative error", "Euler load error", None, EXACT, "error",
-            "against Euler and Engesser"),
-        Row(BUCKLING, "critical length of a root on a plate: relative error", "critical length error", None, EXACT,
-            "error", "against Euler and Engesser"),
-        Row(BUCKLING, "measured lengths or loads at which roots buckle",
-            note="Bizet et al. 2016 find Euler's formula in poplar, without a number we have"),
-        Row(SOIL, "penetrometer's resistance over the root's", "probe over root resistance", probe,
-            note="four confining pressures; a rod of the root's width and friction, in the same grains"),
-        Row(SOIL, "tip force against flexibility", ours="0.52 of a rigid root's at 50 MPa",
-            note="Fakih et al. 2019: it falls exponentially, up to the soil's hardness; ours in [soil.md](soil.md)"),
-    ]  # fmt: skip
+        Row(
+            BUCKLING,
+            "Euler load of a column: relative error",
+            "Euler load error",
+            None,
+            EXACT,
+            "error",
+            "against Euler and Engesser",
+        ),
+        Row(
+            BUCKLING,
+            "critical length of a root on a plate: relative error",
+            "critical length error",
+            None,
+            EXACT,
+            "error",
+            "against Euler and Engesser",
+        ),
+        Row(
+            BUCKLING,
+            "measured lengths or loads at which roots buckle",
+            note="Bizet et al. 2016 find Euler's formula in poplar, without a number we have",
+        ),
+        Row(
+            SOIL,
+            "penetrometer's resistance over the root's",
+            "probe over root resistance",
+            probe,
+            note="four confining pressures; a rod of the root's width and friction, in the same grains",
+        ),
+        Row(
+            SOIL,
+            "tip force against flexibility",
+            ours="0.52 of a rigid root's at 50 MPa",
+            note="Fakih et al. 2019: it falls exponentially, up to the soil's hardness; ours in [soil.md](soil.md)",
+        ),
+    ]
 
 
 def all_rows() -> list[Row]:
