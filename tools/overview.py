@@ -26,7 +26,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from rootsoil_tools import draw, measure, published, soil
+from rootsoil_tools import draw, kinematics, measure, published, soil
 from rootsoil_tools.runs import Frame, Run, RunError, read_summary
 from rootsoil_tools.theory import ClosedForm
 
@@ -46,7 +46,6 @@ LONG_TICKS = 3.0  # more for those of a small deflection
 RIGHT_AXIS_WIDTH = 11.0  # of tick labels and label of an axis on the right
 TIMES = 6
 DEFLECTION_SEEN = 0.1  # of a cell's length: less looks like none
-DATA_HALF_WIDTH = 0.013  # mm: half of what lies between two measured points
 DISTANCE = "distance from the tip (mm)"
 
 
@@ -214,19 +213,14 @@ def draw_growth(run: Run, model: ClosedForm, panels: list) -> list[str]:
             steady_in.append("C")
     if "arabidopsis" in run.name.lower():
         dots = {"color": draw.DATA, "markersize": 2.6, "markeredgewidth": 0, "label": published.SOURCE}
-        for panel, quantity, ours, unit in (
-            (panels[0], "strain_rate", "axial_strain_rate", 100.0),  # %/h
-            (panels[1], "cell_length", "cell_length", 1.0),
-        ):
-            at_mm, measured = published.arabidopsis(quantity)
-            panel.plot(at_mm, measured / unit, "o", **dots)
-            simulated = measure.near_points(run, run.window(measure.WINDOW_H), ours, at_mm, DATA_HALF_WIDTH)
-            there = np.isfinite(simulated).any(axis=0)
-            if np.count_nonzero(there) > 1:
-                r2 = published.fit(measured[there], unit * np.nanmean(simulated[:, there], axis=0)).r2
-                panel.set_title(f"$R^2$ = {r2:.3f}", loc="right")
-                said.append(f"{quantity.replace('_', ' ')}, {published.SOURCE}: R^2 = {r2:.4f}")
-
+        start_h, end_h = kinematics.span_h(run)
+        for panel, quantity in zip(panels, ("axial_strain_rate", "cell_length")):
+            panel.plot(*kinematics.published_curve(quantity), "o", **dots)
+            r2 = kinematics.fit_to_published(run, quantity).r2
+            if np.isfinite(r2):
+                panel.set_title(f"$R^2$ = {r2:.3f}, {start_h:.3g}–{end_h:.3g} h", loc="right")
+                over = f"mean of {start_h:.3g} to {end_h:.3g} h"
+                said.append(f"{quantity.replace('_', ' ')}, {published.SOURCE}: R^2 = {r2:.4f} ({over})")
     draw.draw_profile(panels[2], profiles["radius"])
     start = min(int(np.searchsorted(edges, 0.25 * zone)), len(edges) - 2)
     s_start, r_start = profiles["radius"].s_mm[start], profiles["radius"].mean[start]

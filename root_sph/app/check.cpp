@@ -66,13 +66,14 @@ Json examine(const Scene& scene) {
   solver.advance_window(scene.numerics.steps_a_window());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double steps = std::ceil(scene.scene.duration_h / tissue.step_h);
-  // new tissue has the width of the first cells and, on average, 0.72 (1/(2 ln 2)) of the division threshold as length
+  // new tissue has the width of the first cells and the mean length of steady growth
   constexpr double longest_threshold_mm = 1.0;  // where a profile that never ends is read
   double growth = 1.0;
   if (const DivisionSection* division = scene.find<DivisionSection>()) {
     const double volume_h = theory.tip_speed_mm_h * tissue_volume<Dim>(tissue) / solver.axis().length_mm();
     const double at_mm = std::min(longest_threshold_mm, division->ends_at_mm.value_or(longest_threshold_mm));
-    const double cell = std::pow(model->initial.cell_size_mm, Dim - 1) * 0.72 * division_threshold_mm(*division, at_mm);
+    const double length_mm = mean_length_over_threshold(*division) * division_threshold_mm(*division, at_mm);
+    const double cell = std::pow(model->initial.cell_size_mm, Dim - 1) * length_mm;
     growth += 0.5 * volume_h * scene.scene.duration_h / cell / static_cast<double>(cells);
   }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "root_sph/effects/anisotropy/anisotropy.hpp"
 #include "root_sph/effects/division/division.hpp"
@@ -63,18 +62,16 @@ Carried carry(const Scene& scene, const std::vector<double>& s_mm, double steady
   return carried;
 }
 
-/// Mean length of the cells at each distance, mm. In a steady root those between two divisions are spread evenly over
-/// the logarithm of their length, from half of the longest to the longest, whose mean is the longest over 2 ln 2. The
-/// longest is at the threshold, or where the threshold rises faster than cells grow, what the flow stretched it to
-/// since.
-std::vector<double> steady_cell_length_mm(const std::vector<double>& threshold_mm,
+/// Mean length of the cells at each distance, mm: a share of the longest's, which is at the threshold, or where the
+/// threshold rises faster than cells grow, what the flow stretched it to since.
+std::vector<double> steady_cell_length_mm(double mean_over_longest, const std::vector<double>& threshold_mm,
                                           const std::vector<double>& speed_mm_h) {
   std::vector<double> mean;
   double longest = 0.0;
   for (std::size_t k = 0; k < threshold_mm.size(); ++k) {
     const bool flows = k > 0 && speed_mm_h[k - 1] > 0.0;
     longest = flows ? std::min(threshold_mm[k], longest * speed_mm_h[k] / speed_mm_h[k - 1]) : threshold_mm[k];
-    mean.push_back(longest / (2.0 * std::numbers::ln2));
+    mean.push_back(longest * mean_over_longest);
   }
   return mean;
 }
@@ -121,7 +118,8 @@ FrameTable closed_form_table(const Scene& scene, const Solver<Dim>& solver) {
   add("radial_strain_rate", "1/h", "of growth", along([&](double s) { return rates(s).radial; }));
   if (const DivisionSection* division = scene.find<DivisionSection>()) {
     const std::vector<double> threshold = along([&](double s) { return division_threshold_mm(*division, s); });
-    add("cell_length", "mm", "mean, in steady growth", steady_cell_length_mm(threshold, carried.speed_mm_h));
+    add("cell_length", "mm", "mean, in steady growth",
+        steady_cell_length_mm(mean_length_over_threshold(*division), threshold, carried.speed_mm_h));
     add("division_threshold", "mm", "of the longest axis (Eq. 6)", threshold);
   }
   add("speed_from_tip", "mm/h", "of the tissue, away from the tip", std::move(carried.speed_mm_h));

@@ -164,7 +164,7 @@ def test_closed_form(full_run: Path):
             flow = np.concatenate([[0.0], np.cumsum(np.diff(s) * (rate[1:] + rate[:-1]) / 2.0)])
             assert np.allclose(exact["speed_from_tip"], flow, rtol=2e-3, atol=2e-5)
             assert np.allclose(exact["division_threshold"], 0.011 * (1.0 + 4.0 * s**2), rtol=1e-12)
-            longest = 2.0 * np.log(2.0) * exact["cell_length"]
+            longest = exact["cell_length"] / np.log(2.0)
             assert np.all(longest <= exact["division_threshold"] * (1.0 + 1e-12)) and longest[0] == 0.011
             # what the flow carries stretches with it at most
             moving = exact["speed_from_tip"] > 0.0

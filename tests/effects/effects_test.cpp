@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -242,6 +243,40 @@ TYPED_TEST(Effects, DivisionCutsFreeCellsLongerThanTheThresholdOnce) {
   EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
   this->run(this->solver.hooks().division);
   EXPECT_EQ(cells.size(), before + 4);
+}
+
+/// Cells that grow alike and divide at thresholds of their own, for twelve generations: their mean length is that of
+/// the closed form. They begin evenly over the logarithm of their length, as they do not stay where thresholds differ.
+TEST(Division, MeanLengthOfASteadyPopulationIsTheClosedForms) {
+  for (const double scatter : {0.1, 0.3}) {
+    const DivisionSection section{.l0_mm = 1.0, .scatter = scatter};
+    std::vector<std::pair<double, double>> cells;  // length, threshold
+    std::int64_t next_id = 0;
+    const auto born = [&](double length) { cells.emplace_back(length, division_factor(section, 7, next_id++)); };
+    constexpr int founders = 4000, steps_a_generation = 100, generations = 12;
+    for (int k = 0; k < founders; ++k) born(std::exp2(-(k + 0.5) / founders));
+    double mean = 0.0;
+    for (int step = 1; step <= generations * steps_a_generation; ++step) {
+      const std::size_t before = cells.size();
+      for (std::size_t i = 0; i < before; ++i) {
+        cells[i].first *= std::exp2(1.0 / steps_a_generation);
+        if (cells[i].first < cells[i].second) continue;
+        const double half = 0.5 * cells[i].first;
+        cells[i] = {half, division_factor(section, 7, next_id++)};
+        born(half);
+      }
+      if (step % steps_a_generation == 0) {  // every other cell, whichever it is: the others stay a sample of all
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < cells.size(); i += 2) cells[kept++] = cells[i];
+        cells.resize(kept);
+      }
+      if (step <= (generations - 1) * steps_a_generation) continue;
+      for (const auto& cell : cells) mean += cell.first / (static_cast<double>(cells.size()) * steps_a_generation);
+    }
+    // cells divide at the end of the step in which they pass their threshold, half of a step longer on average
+    const double exact = mean_length_over_threshold(section) * std::exp2(0.5 / steps_a_generation);
+    EXPECT_NEAR(mean / exact, 1.0, 0.01) << scatter;
+  }
 }
 
 TEST(RunawayDivision, IsToldByTheCellsLengthOrTheirNumber) {

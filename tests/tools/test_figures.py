@@ -13,12 +13,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from growth_curves import HALF_WIDTH_MM, OUTPUTS, curve
 from matplotlib import pyplot as plt
 from overview import draw_contact, percent
 from synthetic import make_growing_run, make_strained_run
 
 from rootsoil_tools import measure, published
+from rootsoil_tools.kinematics import HALF_WIDTH_MM, OUTPUTS, curve
 from rootsoil_tools.runs import Frame, Run, RunError
 from rootsoil_tools.theory import growth_ends
 
@@ -334,6 +334,17 @@ def test_growth_curves_beside_measured_ones(project: Path, grown: Path, tmp_path
         assert line in done.stdout, done.stdout
     missing = growth_curves(project, tmp_path)
     assert missing.returncode == 1 and "no picture of" in missing.stderr and "Traceback" not in missing.stderr
+
+
+def test_one_run_has_one_agreement(project: Path, tmp_path: Path):
+    """The overview and growth_curves compare the same outputs with Beemster & Baskin, and say which."""
+    run = make_growing_run(tmp_path / "run", name="arabidopsis", frames=50)
+    curves, whole = growth_curves(project, run).stdout, overview(project, run).stdout
+    for quantity in ("axial strain rate", "cell length"):
+        by_curves = re.search(rf"^{quantity}: R\^2 (\S+),", curves, re.M)
+        by_overview = re.search(rf"^{quantity}, Beemster & Baskin 1998: R\^2 = (\S+) \(mean of (\S+) to", whole, re.M)
+        assert by_curves and by_overview and by_curves[1] == by_overview[1]
+        assert float(by_overview[2]) == pytest.approx(Run(run).times_h[-OUTPUTS], rel=1e-2)
 
 
 def test_growth_curves_measure_what_cells_have(grown: Path):

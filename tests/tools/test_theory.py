@@ -29,6 +29,8 @@ def test_flow_and_travel_under_a_constant_rate():
     assert model.tip_speed(2.0) == pytest.approx(0.8)
     assert model.tip_speed(4.0) == pytest.approx(1.6), "beyond the root's length at its end's rate"
     assert model.carried_to(0.1, 3.0, 2.0) == pytest.approx(0.1 * math.exp(1.2), rel=1e-4)
+    assert model.travel_time(0.1, 0.1 * math.exp(1.2), 2.0) == pytest.approx(3.0, rel=1e-4)
+    assert math.isnan(model.travel_time(0.1, 2.5, 2.0)), "beyond the root"
     assert model.stretch(np.array([0.5, 1.0]), 3.0, 3.0) == pytest.approx(math.exp(1.2), rel=1e-3)
     assert model.radius(np.array([0.1, 0.2, 0.8]), 0.2, 0.05)[1:] == pytest.approx([0.05, 0.2])
     assert np.isnan(model.radius(np.array([0.1]), 0.2, 0.05)[0])

@@ -31,10 +31,15 @@ class Reference:
     source: str
 
 
+def table(name: str) -> list[dict[str, str]]:
+    """The rows of a table in tools/data, without its comments."""
+    with (DATA / f"{name}.csv").open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
 def reference(quantity: str, species: str) -> Reference:
-    """The row of tools/data/reference_values.csv; ValueError where there is none."""
-    with (DATA / "reference_values.csv").open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    """The row of reference_values.csv (measured roots) or paper_values.csv; ValueError where there is none."""
+    rows = [row for name in ("reference_values", "paper_values") for row in table(name)]
     for row in rows:
         if (row["quantity"], row["species"]) == (quantity, species):
             return Reference(float(row["low"]), float(row["high"]), row["unit"], row["source"])

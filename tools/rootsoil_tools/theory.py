@@ -90,6 +90,11 @@ class ClosedForm:
         moving = (s >= s_start) & (v > 0.0)
         return s[moving], cumulative_integral(s[moving], 1.0 / v[moving])
 
+    def travel_time(self, s_start: float, s_end: float, length: float) -> float:
+        """How long (h) tissue takes from one distance from the tip (mm) to another; NaN where it does not move."""
+        s, time = self._journey(s_start, length)
+        return float(np.interp(s_end, s, time)) if s.size > 1 and s[0] <= s_end <= s[-1] else float("nan")
+
     def carried_to(self, s_start: float, duration: float, length: float) -> float:
         """Where (mm from the tip) tissue is after `duration` h that started at s_start mm; at most the length."""
         s, time = self._journey(s_start, length)

@@ -87,6 +87,10 @@ double division_threshold_mm(const DivisionSection& d, double s_mm) {
   return d.l0_mm * (d.c_d + d.s_d_per_mm2 * (s - d.x_d_mm) * (s - d.x_d_mm));
 }
 
+double mean_length_over_threshold(const DivisionSection& d) {
+  return std::numbers::ln2 * std::exp(-0.5 * d.scatter * d.scatter);
+}
+
 double division_factor(const DivisionSection& d, std::int64_t seed, std::int64_t cell_id) {
   if (d.scatter == 0.0) return 1.0;
   const auto u = [&](std::uint64_t n) { return uniform(seed, cell_id, n); };

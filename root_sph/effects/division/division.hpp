@@ -24,6 +24,12 @@ double division_threshold_mm(const DivisionSection& division, double s_mm);
 /// nothing is kept, and a resumed run draws the same. \param seed of the scene
 double division_factor(const DivisionSection& division, std::int64_t seed, std::int64_t cell_id);
 
+/// Mean length of the cells of a steady population over the threshold of its place. Cells grow at one rate, and their
+/// number doubles with their length, so that there are 1/l^2 dl of a length l between half of the threshold and the
+/// threshold, whose mean is ln 2 (docs/decisions/0023). The threshold is that of the cells which divide: those with a
+/// shorter one do so sooner and outnumber the others by 1/threshold, so a scatter takes exp(-scatter^2/2) besides.
+double mean_length_over_threshold(const DivisionSection& division);
+
 /// Moves the cells of a file along the root, by a little, so that gaps and overlaps between them even out. Spacing and
 /// cell length drift apart by a per cent where the growth rate varies, and a gap doubles relative to its cells in every
 /// generation until the file is torn (docs/decisions/0007). Pair by pair and opposite, so the centroid of a file stays.
