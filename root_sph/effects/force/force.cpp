@@ -73,7 +73,7 @@ SectionSpec force_section() {
 }  // namespace
 
 template <int Dim>
-ForceEffect<Dim>::ForceEffect(Solver<Dim>& solver, ForceSection force) : force_(std::move(force)) {
+ForceEffect<Dim>::ForceEffect(Solver<Dim>& solver, ForceSection force) : solver_(solver), force_(std::move(force)) {
   solver.hooks().parameters.emplace_back("force", [this](Tissue<Dim>& t) {
     loaded_.clear();
     weight_.clear();
@@ -93,10 +93,10 @@ ForceEffect<Dim>::ForceEffect(Solver<Dim>& solver, ForceSection force) : force_(
     for (double& w : weight_) w /= volume;
   });
   solver.hooks().forces.emplace_back("force", [this](Tissue<Dim>& t, SlipAdvance) {
-    const double factor = force_.table.empty() ? 1.0 : value_at(force_.table, t.time_h);
+    factor_ = force_.table.empty() ? 1.0 : value_at(force_.table, t.time_h);
     applied_N_.setZero();
     for (std::size_t k = 0; k < loaded_.size(); ++k) {
-      const Vec<Dim> share = share_N(t.cells, k, factor);
+      const Vec<Dim> share = share_N(k);
       t.force[loaded_[k]] += share;
       applied_N_ += share;
     }
@@ -104,10 +104,22 @@ ForceEffect<Dim>::ForceEffect(Solver<Dim>& solver, ForceSection force) : force_(
 }
 
 template <int Dim>
-Vec<Dim> ForceEffect<Dim>::share_N(const ParticleStore<Dim>& cells, std::size_t k, double factor) const {
+Vec<Dim> ForceEffect<Dim>::share_N(std::size_t k) const {
+  const auto& frame = solver_.tissue().cells.frame;
   const Vec<Dim> whole =
-      force_.axial_N ? Vec<Dim>(-*force_.axial_N * cells.frame[loaded_[k]].col(0)) : shortened<Dim>(*force_.vector_N);
-  return factor * weight_[k] * whole;
+      force_.axial_N ? Vec<Dim>(-*force_.axial_N * frame[loaded_[k]].col(0)) : shortened<Dim>(*force_.vector_N);
+  return factor_ * weight_[k] * whole;
+}
+
+template <int Dim>
+double ForceEffect<Dim>::tip_thrust_N(double within_mm) const {
+  const auto& cells = solver_.tissue().cells;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < loaded_.size(); ++k) {
+    const std::size_t i = loaded_[k];
+    if (cells.distance_to_tip[i] <= within_mm) sum -= share_N(k).dot(cells.frame[i].col(0));
+  }
+  return sum;
 }
 
 template <int Dim>

@@ -20,14 +20,17 @@ class ForceEffect final : public Effect<Dim> {
  public:
   ForceEffect(Solver<Dim>& solver, ForceSection force);
   Vec<Dim> external_force_N() const override { return applied_N_; }
+  double tip_thrust_N(double within_mm) const override;
   std::vector<std::pair<std::string, double>> history() const override;
 
  private:
-  Vec<Dim> share_N(const ParticleStore<Dim>& cells, std::size_t k, double factor) const;
+  Vec<Dim> share_N(std::size_t k) const;
 
+  const Solver<Dim>& solver_;
   ForceSection force_;
   std::vector<std::size_t> loaded_;  ///< cells of the band, in the window under way
   std::vector<double> weight_;       ///< of each; together 1
+  double factor_ = 0.0;              ///< of the table, at the latest forces
   Vec<Dim> applied_N_ = Vec<Dim>::Zero();
 };
 

@@ -315,6 +315,16 @@ Vec<Dim> ObstacleEffect<Dim>::contact_force_N() const {
   return sum;
 }
 
+template <int Dim>
+double ObstacleEffect<Dim>::tip_thrust_N(double within_mm) const {
+  const auto& cells = solver_.tissue().cells;
+  double sum = 0.0;
+  for (const std::size_t i : near_) {
+    if (cells.distance_to_tip[i] <= within_mm) sum -= force_[i].dot(cells.frame[i].col(0));
+  }
+  return sum;
+}
+
 EffectSpec obstacle_effect() {
   return {.name = "obstacle",
           .called_by = "[[obstacle]]",
