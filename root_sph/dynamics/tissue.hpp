@@ -83,9 +83,7 @@ struct Tissue {
   void need_inertia();
   /// What parameters respond to (Eq. 7): the pressure differential less the thrust on the tip, of which no pull and no
   /// more than the pressure counts.
-  double perceived_MPa() const {
-    return pressure_MPa - std::clamp(tip_thrust_MPa, 0.0, std::max(0.0, pressure_MPa));
-  }
+  double perceived_MPa() const { return pressure_MPa - std::clamp(tip_thrust_MPa, 0.0, std::max(0.0, pressure_MPa)); }
   /// Clamped for good, and not part of the root that grows.
   bool is_base(std::size_t cell) const { return cells.clamped[cell] && !(asleep && (*asleep)[cell]); }
 };

@@ -108,8 +108,8 @@ double fastest_tip_speed_mm_h(const Scene& scene) {
 
 template <int Dim>
 FreeGrowth free_growth(const Scene& scene) {
-  return {.axial_rate_per_h =
-              [scene](double s_mm, const Pressures& p) { return closed_form_rates<Dim>(scene, s_mm, p).axial; },
+  return {.axial_rate_per_h = [scene](double s_mm,
+                                      const Pressures& p) { return closed_form_rates<Dim>(scene, s_mm, p).axial; },
           .arrest_stress_MPa = [scene](const Pressures& p) { return arrest_stress_MPa<Dim>(scene, p); },
           .fastest_tip_speed_mm_h = fastest_tip_speed_mm_h<Dim>(scene)};
 }

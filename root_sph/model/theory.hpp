@@ -22,7 +22,6 @@ ClosedFormFlow closed_form_flow(const Scene& scene, double length_mm, const Pres
 template <int Dim>
 ClosedFormFlow fastest_flow(const Scene& scene, double length_mm, double p_MPa);
 
-
 /// The largest tip speed that the root reaches in the scene, mm/h: it begins shorter than its growth zone and gains
 /// speed, and the pressure may change. Follows length and pressure over time; what it may perceive counts at the end.
 template <int Dim>

@@ -83,11 +83,12 @@ void check_response(const Scene& scene, const SectionSpec& target, const std::st
     for (const double p : responding_range_MPa(scene)) {
       const double number = responded(found->second, response.p_MPa, p, extrapolate);
       if (key.limits.contains(number)) continue;
-      origins.fail(fmt::format("{}.{}", name, key.name),
-                   fmt::format("Eq. 7 gives {:.4g} at p = {} MPa{}", number, p,
-                               p < scene.facts.pressure_MPa[0] ? ", which a root perceives that is pushed as hard" : ""),
-                   toml_text(numbers_of(found->second)), key.limits.text(),
-                   "set response.extrapolate = false, or choose p_MPa so that they enclose the pressure");
+      origins.fail(
+          fmt::format("{}.{}", name, key.name),
+          fmt::format("Eq. 7 gives {:.4g} at p = {} MPa{}", number, p,
+                      p < scene.facts.pressure_MPa[0] ? ", which a root perceives that is pushed as hard" : ""),
+          toml_text(numbers_of(found->second)), key.limits.text(),
+          "set response.extrapolate = false, or choose p_MPa so that they enclose the pressure");
     }
   }
 }

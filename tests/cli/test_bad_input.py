@@ -187,8 +187,8 @@ SCENES: dict[str, tuple[str, tuple[str, ...]]] = {
         + '[growth]\nx_g_mm = 0.05\ns_g_mm = 0.15\nc_g = -0.95\n[response]\nfollows = "perceived"\n'
         + "[response.growth]\np_MPa = [1, 0]\nlambda0_ug_mm3_h = [4e5, 3e5]\n",
         (
-            "scene.toml:25: response.follows: there is nothing that the root could perceive",
-            "given:   \"perceived\"",
+            "scene.toml:23: response.follows: there is nothing that the root could perceive",
+            'given:   "perceived"',
             "add [soil], [[obstacle]] or [force], or take follows out",
         ),
     ),

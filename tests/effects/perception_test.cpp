@@ -2,9 +2,11 @@
 // What the root notices of the bodies that it meets, on its own: [response] with follows = "perceived".
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "root_sph/effects/force/force.hpp"
 #include "root_sph/effects/response/response.hpp"
@@ -14,6 +16,12 @@ namespace rootsoil {
 namespace {
 
 using test::Random;
+
+ResponseSection at_once(std::optional<double> tip_length_mm = {}) {
+  return {true, Follows::perceived, 0.0, tip_length_mm};
+}
+/// Against growth, on the last 0.02 mm.
+ForceSection axial(double force_N) { return {force_N, {}, {}, {0.0, 0.02}}; }
 
 TEST(LowPass, IsExactWhateverTheSteps) {
   double q = 0.0, time_h = 0.0;
@@ -45,7 +53,7 @@ class Perception : public testing::Test {
   static constexpr int Dim = Dimension::value;
   static constexpr double force_N = 0.01;
   Random random{1};
-  Solver<Dim> solver{{.step_h = 0.02}};
+  Solver<Dim> solver{SolverOptions{}};
   Tissue<Dim>& tissue = solver.tissue();
   EffectList<Dim> effects;
 
@@ -75,8 +83,8 @@ class Perception : public testing::Test {
 TYPED_TEST_SUITE(Perception, test::BothDimensions, test::DimensionName);
 
 TYPED_TEST(Perception, IsTheForceOnTheTipOverTheSection) {
-  this->perceive({.follows = Follows::perceived, .over_h = 0.0});
-  this->push({.axial_N = this->force_N, .distance_to_tip_mm = {0.0, 0.02}});
+  this->perceive(at_once());
+  this->push(axial(this->force_N));
   this->act();
   EXPECT_NEAR(this->tissue.tip_thrust_MPa, this->force_N / this->section(), 1e-14);
   this->tissue.pressure_MPa = 20.0;
@@ -84,9 +92,9 @@ TYPED_TEST(Perception, IsTheForceOnTheTipOverTheSection) {
 }
 
 TYPED_TEST(Perception, OfTwoForcesIsTheirSum) {
-  this->push({.axial_N = this->force_N, .distance_to_tip_mm = {0.0, 0.02}});
-  this->perceive({.follows = Follows::perceived, .over_h = 0.0});
-  this->push({.axial_N = -3.0 * this->force_N, .distance_to_tip_mm = {0.0, 0.02}});
+  this->push(axial(this->force_N));
+  this->perceive(at_once());
+  this->push(axial(-3.0 * this->force_N));
   this->act();
   EXPECT_NEAR(this->tissue.tip_thrust_MPa, -2.0 * this->force_N / this->section(), 1e-14);
 }
@@ -94,8 +102,8 @@ TYPED_TEST(Perception, OfTwoForcesIsTheirSum) {
 /// What pushes across the root, or farther from the tip than a diameter, is not perceived.
 TYPED_TEST(Perception, IsAlongTheAxisAndNearTheTip) {
   constexpr int dim = TypeParam::value;
-  ForceEffect<dim>& force = this->push({.vector_N = {-0.03, 0.04, 0.0}, .distance_to_tip_mm = {0.0, 0.3}});
-  this->perceive({.follows = Follows::perceived, .over_h = 0.0, .tip_length_mm = 0.1});
+  ForceEffect<dim>& force = this->push({{}, std::array{-0.03, 0.04, 0.0}, {}, {0.0, 0.3}});
+  this->perceive(at_once(0.1));
   this->act();
   const auto& cells = this->tissue.cells;
   double volume = 0.0, near = 0.0;
@@ -104,17 +112,17 @@ TYPED_TEST(Perception, IsAlongTheAxisAndNearTheTip) {
     if (cells.distance_to_tip[i] <= 0.1) near += cells.volume[i];
   }
   EXPECT_NEAR(near / volume, 1.0 / 3.0, 0.02);
-  EXPECT_NEAR(force.tip_thrust_N(0.1), 0.03 * near / volume, 1e-14);
+  EXPECT_NEAR(force.tip_force_N(0.1)[0], -0.03 * near / volume, 1e-14);
   EXPECT_NEAR(this->tissue.tip_thrust_MPa, 0.03 * near / volume / this->section(), 1e-13);
   // by default the root's diameter
   const double diameter_mm = dim == 2 ? 0.04 : 0.04 * std::sqrt(4.0 / std::numbers::pi);
-  this->perceive({.follows = Follows::perceived, .over_h = 0.0});
+  this->perceive(at_once());
   this->act();
-  EXPECT_NEAR(this->tissue.tip_thrust_MPa, force.tip_thrust_N(diameter_mm) / this->section(), 1e-14);
+  EXPECT_NEAR(this->tissue.tip_thrust_MPa, -force.tip_force_N(diameter_mm)[0] / this->section(), 1e-14);
 }
 
 TYPED_TEST(Perception, IsSavedAndRestored) {
-  PerceptionEffect<TypeParam::value>& perception = this->perceive({.follows = Follows::perceived});
+  PerceptionEffect<TypeParam::value>& perception = this->perceive(at_once());
   this->tissue.pressure_MPa = 1.0;
   this->tissue.tip_thrust_MPa = 0.3;
   NamedReals saved;

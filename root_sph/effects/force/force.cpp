@@ -112,12 +112,10 @@ Vec<Dim> ForceEffect<Dim>::share_N(std::size_t k) const {
 }
 
 template <int Dim>
-double ForceEffect<Dim>::tip_thrust_N(double within_mm) const {
-  const auto& cells = solver_.tissue().cells;
-  double sum = 0.0;
+Vec<Dim> ForceEffect<Dim>::tip_force_N(double within_mm) const {
+  Vec<Dim> sum = Vec<Dim>::Zero();
   for (std::size_t k = 0; k < loaded_.size(); ++k) {
-    const std::size_t i = loaded_[k];
-    if (cells.distance_to_tip[i] <= within_mm) sum -= share_N(k).dot(cells.frame[i].col(0));
+    if (solver_.tissue().cells.distance_to_tip[loaded_[k]] <= within_mm) sum += share_N(k);
   }
   return sum;
 }

@@ -20,7 +20,7 @@ class ForceEffect final : public Effect<Dim> {
  public:
   ForceEffect(Solver<Dim>& solver, ForceSection force);
   Vec<Dim> external_force_N() const override { return applied_N_; }
-  double tip_thrust_N(double within_mm) const override;
+  Vec<Dim> tip_force_N(double within_mm) const override;
   std::vector<std::pair<std::string, double>> history() const override;
 
  private:

@@ -316,11 +316,10 @@ Vec<Dim> ObstacleEffect<Dim>::contact_force_N() const {
 }
 
 template <int Dim>
-double ObstacleEffect<Dim>::tip_thrust_N(double within_mm) const {
-  const auto& cells = solver_.tissue().cells;
-  double sum = 0.0;
+Vec<Dim> ObstacleEffect<Dim>::tip_force_N(double within_mm) const {
+  Vec<Dim> sum = Vec<Dim>::Zero();
   for (const std::size_t i : near_) {
-    if (cells.distance_to_tip[i] <= within_mm) sum -= force_[i].dot(cells.frame[i].col(0));
+    if (solver_.tissue().cells.distance_to_tip[i] <= within_mm) sum += force_[i];
   }
   return sum;
 }

@@ -67,9 +67,14 @@ PerceptionEffect<Dim>::PerceptionEffect(Solver<Dim>& solver, const EffectList<Di
 
 template <int Dim>
 double PerceptionEffect<Dim>::tip_thrust_MPa() const {
-  double thrust_N = 0.0;
-  for (const auto& effect : effects_) thrust_N += effect->tip_thrust_N(tip_length_mm_);
-  return thrust_N / mean_section<Dim>(solver_.tissue(), solver_.axis());
+  const auto& cells = solver_.tissue().cells;
+  Vec<Dim> force_N = Vec<Dim>::Zero(), axis = Vec<Dim>::Zero();
+  for (const auto& effect : effects_) force_N += effect->tip_force_N(tip_length_mm_);
+  if (force_N.isZero(0.0)) return 0.0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells.distance_to_tip[i] <= tip_length_mm_) axis += cells.volume[i] * cells.frame[i].col(0);
+  }
+  return -force_N.dot(axis.normalized()) / mean_section<Dim>(solver_.tissue(), solver_.axis());
 }
 
 template <int Dim>

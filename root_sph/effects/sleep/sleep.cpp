@@ -260,8 +260,8 @@ void SleepEffect<Dim>::watch(const Tissue<Dim>& tissue) {
   if (cells.size() == cells.total()) return;
   const double scale = std::max(std::abs(tissue.pressure_MPa), std::abs(pressure_MPa_));
   const double most = parameters_.stress_change * scale;
-  wake_wanted_ = std::max(std::abs(tissue.pressure_MPa - pressure_MPa_),
-                          std::abs(tissue.perceived_MPa() - perceived_MPa_)) > most;
+  wake_wanted_ =
+      std::max(std::abs(tissue.pressure_MPa - pressure_MPa_), std::abs(tissue.perceived_MPa() - perceived_MPa_)) > most;
   for (std::size_t i = 0; i < cells.size() && !wake_wanted_; ++i) {
     wake_wanted_ = asleep_[i] && std::abs(cells.stress[i][0] - stress_asleep_[i]) > most;
   }

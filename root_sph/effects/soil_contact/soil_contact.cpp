@@ -219,6 +219,15 @@ Vec<Dim> SoilContactEffect<Dim>::contact_force_N() const {
 }
 
 template <int Dim>
+Vec<Dim> SoilContactEffect<Dim>::tip_force_N(double within_mm) const {
+  Vec<Dim> sum = Vec<Dim>::Zero();
+  for (std::size_t m = 0; m < place_.size(); ++m) {
+    if (place_[m].distance_to_tip_mm <= within_mm) sum += window_.applied_N()[m];
+  }
+  return sum;
+}
+
+template <int Dim>
 void SoilContactEffect<Dim>::save(NamedReals& reals) const {
   exchange_.save(reals);
   books_.save(reals);

@@ -58,7 +58,7 @@ class SoilContactEffect final : public Effect<Dim> {
   std::vector<std::string> take_notes() override;
   std::string closing_remark() const override;
   Vec<Dim> contact_force_N() const override;
-  double tip_thrust_N(double within_mm) const override { return thrust_within_N(thrust(), within_mm); }
+  Vec<Dim> tip_force_N(double within_mm) const override;
 
   const MaterialSurface<Dim>& surface() const { return exchange_.surface(); }
   /// Of the soil on a marker, as last answered.
