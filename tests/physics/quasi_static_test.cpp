@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Steps that end in balance, against exact answers: the same problems as with inertia, and those that inertia spoils.
+#include <fmt/format.h>
+
 #include "bending.hpp"
 #include "growth.hpp"
 #include "strain.hpp"

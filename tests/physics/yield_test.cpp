@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Growth beyond a yield stress, against its closed form (docs/decisions/0024): behind a thrust q the axial rate is
 // lambda/(rho0 E_A) ((p - b)(1 - (d - 1) nu_A) - q), b = min(Y, pi).
+#include <fmt/format.h>
+
 #include "growth.hpp"
 #include "root_sph/effects/growth/growth.hpp"
 
