@@ -8,6 +8,7 @@
 #include "root_sph/effects/division/division.hpp"
 #include "root_sph/effects/growth/growth.hpp"
 #include "root_sph/model/theory.hpp"
+#include "root_sph/scene/response.hpp"
 
 namespace rootsoil {
 namespace {
@@ -26,11 +27,11 @@ std::vector<double> distances_mm(double length_mm, double zone_mm) {
 
 /// Beyond it the axial rate stays below a twentieth of its peak, mm.
 template <int Dim>
-double growth_zone_mm(const Scene& scene, double length_mm, double p_MPa) {
+double growth_zone_mm(const Scene& scene, double length_mm, const Pressures& p) {
   constexpr int parts = 1000;
   std::vector<double> rate;
   for (int k = 0; k <= parts; ++k) {
-    rate.push_back(closed_form_rates<Dim>(scene, k * length_mm / parts, p_MPa).axial);
+    rate.push_back(closed_form_rates<Dim>(scene, k * length_mm / parts, p).axial);
   }
   const double least = 0.05 * *std::max_element(rate.begin(), rate.end());
   const auto last = std::find_if(rate.rbegin(), rate.rend(), [&](double r) { return r > least; });
@@ -44,14 +45,14 @@ struct Carried {
 
 /// v' = axial rate and (ln r)' = radial rate/v, by the midpoint rule on a hundredth of the growth zone or less.
 template <int Dim>
-Carried carry(const Scene& scene, const std::vector<double>& s_mm, double steady_from_mm, double p_MPa) {
+Carried carry(const Scene& scene, const std::vector<double>& s_mm, double steady_from_mm, const Pressures& p) {
   constexpr int substeps = 8;
   Carried carried;
   double v = 0.0, log_radius = 0.0;
   for (std::size_t k = 0; k < s_mm.size(); ++k) {
     for (int part = 0; k > 0 && part < substeps; ++part) {
       const double ds_mm = (s_mm[k] - s_mm[k - 1]) / substeps, middle_mm = s_mm[k - 1] + (part + 0.5) * ds_mm;
-      const AxialRadial rate = closed_form_rates<Dim>(scene, middle_mm, p_MPa);
+      const AxialRadial rate = closed_form_rates<Dim>(scene, middle_mm, p);
       const double v_middle = v + 0.5 * ds_mm * rate.axial;
       if (middle_mm > steady_from_mm && v_middle > 0.0) log_radius += ds_mm * rate.radial / v_middle;
       v += ds_mm * rate.axial;
@@ -80,9 +81,10 @@ std::vector<double> steady_cell_length_mm(double mean_over_longest, const std::v
 
 template <int Dim>
 FrameTable closed_form_table(const Scene& scene, const Solver<Dim>& solver) {
-  const double p_MPa = solver.tissue().pressure_MPa, length_mm = solver.axis().length_mm();
-  const auto growth = growth_at(scene, p_MPa);
-  const double zone_mm = growth ? growth_zone_mm<Dim>(scene, length_mm, p_MPa) : length_mm;
+  const Pressures p(solver.tissue());
+  const double p_MPa = p.differential_MPa, length_mm = solver.axis().length_mm();
+  const auto growth = growth_at(scene, p.perceived_MPa);
+  const double zone_mm = growth ? growth_zone_mm<Dim>(scene, length_mm, p) : length_mm;
   const std::vector<double> s_mm = distances_mm(length_mm, zone_mm);
 
   FrameTable table{"closed_form", {}};
@@ -95,21 +97,25 @@ FrameTable closed_form_table(const Scene& scene, const Solver<Dim>& solver) {
     return values;
   };
   const auto strain = [&](double s) {
-    const Stiffness<Dim> k = stiffness<Dim>(elastic_constants(scene, s, p_MPa));
+    const Stiffness<Dim> k = stiffness<Dim>(elastic_constants(scene, s, p.perceived_MPa));
     return visit_law<Dim>(scene.tissue.law, [&]<class Law>(Law) { return Law::equilibrium_strain(k, p_MPa); });
   };
   add("distance_to_tip", "mm", "from the tip along the root", s_mm);
   add("pressure_differential", "MPa", "the same all along the root", along([&](double) { return p_MPa; }));
+  if (responds_to_perceived(scene)) {
+    add("perceived_pressure", "MPa", "what parameters respond to (Eq. 7)",
+        along([&](double) { return p.perceived_MPa; }));
+  }
   add("arrest_stress", "MPa", "axial compression that stops growth",
-      along([&](double s) { return arrest_stress_MPa<Dim>(scene, s, p_MPa); }));
+      along([&](double s) { return arrest_stress_MPa<Dim>(scene, s, p); }));
   add("radial_modulus", "MPa", "E_R (Eq. 6, 7)",
-      along([&](double s) { return elastic_constants(scene, s, p_MPa).E_radial_MPa; }));
+      along([&](double s) { return elastic_constants(scene, s, p.perceived_MPa).E_radial_MPa; }));
   add("axial_strain", "1", "elastic, logarithmic (Eq. 8)", along([&](double s) { return strain(s).axial; }));
   add("radial_strain", "1", "elastic, logarithmic (Eq. 8)", along([&](double s) { return strain(s).radial; }));
   if (!growth) return table;
 
-  const auto rates = [&](double s) { return closed_form_rates<Dim>(scene, s, p_MPa); };
-  Carried carried = carry<Dim>(scene, s_mm, 0.25 * zone_mm, p_MPa);
+  const auto rates = [&](double s) { return closed_form_rates<Dim>(scene, s, p); };
+  Carried carried = carry<Dim>(scene, s_mm, 0.25 * zone_mm, p);
   add("softening", "ug/(mm^3 h)", "lambda (Eq. 6, 7)", along([&](double s) { return softening_ug_mm3_h(*growth, s); }));
   if (!growth->yield.empty()) {
     add("yield_stress", "MPa", "beyond which tissue grows", along([&](double s) { return yield_MPa(*growth, s); }));

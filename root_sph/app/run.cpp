@@ -400,7 +400,7 @@ ExitStatus Run<Dim>::go() {
   const std::int64_t total = steps_at_the_end(), until = last_step();
   const std::int64_t per_frame = steps_per(scene_.output.every_h);
   const std::int64_t per_checkpoint = steps_per(*scene_.output.checkpoint_every_h);
-  const ClosedFormFlow theory = closed_form_flow<Dim>(scene_, solver.axis().length_mm(), tissue.pressure_MPa);
+  const ClosedFormFlow theory = closed_form_flow<Dim>(scene_, solver.axis().length_mm(), Pressures(tissue));
   log_.info("{}: {} cells, {:.4g} h in {} steps of {:.4g} h, {} threads", scene_.scene.name, tissue.cells.total(),
             scene_.scene.duration_h, total, tissue.step_h, omp_get_max_threads());
   if (theory.tip_speed_mm_h > 0.0) {

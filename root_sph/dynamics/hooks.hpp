@@ -54,10 +54,11 @@ struct Hooks {
   Passes<bool&> friction;  ///< without inertia, at a balance: friction follows the forces; true where it matters
 
   // The window's end, in this order: pairs and deformation of the window are still there; what remains is state.
-  Passes<> surface;   ///< what is carried along by the tissue moves
-  Passes<> exchange;  ///< motion goes out and forces come in
-  Passes<> spacing;   ///< cells may be moved where the tissue stays
-  Passes<> watch;     ///< distances and flow are those of the end: see what has become of it all
+  Passes<> surface;     ///< what is carried along by the tissue moves
+  Passes<> exchange;    ///< motion goes out and forces come in
+  Passes<> spacing;     ///< cells may be moved where the tissue stays
+  Passes<> perception;  ///< distances and flow are those of the end: what the root notices of the forces on it
+  Passes<> watch;       ///< see what has become of it all
 
   template <class... Arguments>
   static void run(const Passes<Arguments...>& passes, PhaseClock& clock, Tissue<Dim>& tissue, Arguments... arguments) {

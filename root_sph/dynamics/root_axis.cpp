@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "root_sph/core/errors.hpp"
 #include "root_sph/dynamics/cell_axes.hpp"
@@ -25,12 +24,6 @@ void fill_gaps(std::vector<double>& value, const std::vector<double>& weight) {
     last = b;
   }
   if (last >= 0) std::fill(value.begin() + last + 1, value.end(), value[last]);
-}
-
-/// Of a root with this section: in 2D, where a volume is an area, the section is the diameter.
-template <int Dim>
-double diameter_of(double section) {
-  return Dim == 2 ? section : std::sqrt(4.0 * section / std::numbers::pi);
 }
 
 /// Memory and time go with this: a root that is a thread of 10^6 diameters has come apart.

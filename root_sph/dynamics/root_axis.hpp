@@ -2,6 +2,8 @@
 // The root as a line: distance from the tip along a bent root, and how fast the tissue flows along it.
 #pragma once
 
+#include <cmath>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -50,6 +52,12 @@ class RootAxis {
   Vec<Dim> tip_mm_ = Vec<Dim>::Zero();
   std::vector<double> flow_mm_h_;
 };
+
+/// Of a root with this section, mm: in 2D, where a volume is an area, the section is the diameter.
+template <int Dim>
+double diameter_of(double section) {
+  return Dim == 2 ? section : std::sqrt(4.0 * section / std::numbers::pi);
+}
 
 /// Mean cross-section of the tissue that the base does not hold, mm^(Dim-1).
 template <int Dim>

@@ -225,6 +225,7 @@ void Solver<Dim>::end_window() {
     for (std::size_t i = 0; i < cells.size(); ++i) middle[i] = 0.5 * (middle[i] + cells.distance_to_tip[i]);
     axis_.measure_flow(tissue_, middle, window_h_);
   });
+  Hooks<Dim>::run(hooks_.perception, clock_, tissue_);
   Hooks<Dim>::run(hooks_.watch, clock_, tissue_);
 }
 

@@ -7,6 +7,7 @@
 // window are therefore exact, whatever its length (docs/decisions/0002).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -72,11 +73,17 @@ struct Tissue {
   double time_h = 0.0;
   double step_h = 0.0;
   double pressure_MPa = 0.0;  ///< differential; total stress = stress - pressure 1
+  /// Axial push of bodies outside on the tip, over the root's section, as the tissue perceives it: what responds to the
+  /// pressure differential responds to this as well. 0 where it perceives nothing.
+  double tip_thrust_MPa = 0.0;
   std::int64_t next_cell_id = 0;
 
   Tissue();
   /// Adds the columns of inertia, once.
   void need_inertia();
+  /// What parameters respond to (Eq. 7): the pressure differential less the thrust on the tip, of which no pull and no
+  /// more than the pressure counts.
+  double perceived_MPa() const { return pressure_MPa - std::clamp(tip_thrust_MPa, 0.0, std::max(0.0, pressure_MPa)); }
   /// Clamped for good, and not part of the root that grows.
   bool is_base(std::size_t cell) const { return cells.clamped[cell] && !(asleep && (*asleep)[cell]); }
 };

@@ -53,6 +53,8 @@ class Effect {
   virtual Vec<Dim> contact_force_N() const { return Vec<Dim>::Zero(); }
   /// Of everything outside the root, N: what the forces of all cells sum up to.
   virtual Vec<Dim> external_force_N() const { return contact_force_N(); }
+  /// Of bodies outside on the root within a distance of its tip, N.
+  virtual Vec<Dim> tip_force_N(double /*within_mm*/) const { return Vec<Dim>::Zero(); }
   /// On each cell, where cells at rest feel it too, N; nullptr: they don't.
   virtual const Field<Dim, Vec<Dim>>* lasting_force() const { return nullptr; }
   /// Marks cells that must not fall asleep now, at a window's end.

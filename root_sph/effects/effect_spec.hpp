@@ -15,12 +15,20 @@
 
 namespace rootsoil {
 
+/// A pressure differential, and what of it the tissue perceives: what responds to pressure (Eq. 7) follows the latter.
+struct Pressures {
+  double differential_MPa, perceived_MPa;
+  Pressures(double p_MPa) : Pressures(p_MPa, p_MPa) {}  ///< nothing pushes
+  Pressures(double p_MPa, double felt_MPa) : differential_MPa(p_MPa), perceived_MPa(felt_MPa) {}
+  template <int Dim>
+  explicit Pressures(const Tissue<Dim>& now) : Pressures(now.pressure_MPa, now.perceived_MPa()) {}
+};
+
 /// The root as it would grow with nothing in its way, by the closed form.
 struct FreeGrowth {
-  /// At a distance from the tip, under the pressure differential at the start.
-  std::function<double(double s_mm)> axial_rate_per_h;
-  /// Axial compression that stops growth at a pressure differential.
-  std::function<double(double p_MPa)> arrest_stress_MPa = [](double p_MPa) { return p_MPa; };
+  std::function<double(double s_mm, const Pressures& p)> axial_rate_per_h;  ///< at a distance from the tip
+  /// Axial compression that stops growth.
+  std::function<double(const Pressures& p)> arrest_stress_MPa = [](const Pressures& p) { return p.differential_MPa; };
   double fastest_tip_speed_mm_h = 0.0;  ///< that the root can reach in the scene
 };
 

@@ -11,6 +11,7 @@
 #include "root_sph/effects/anisotropy/anisotropy.hpp"
 #include "root_sph/effects/pressure/pressure.hpp"
 #include "root_sph/scene/presets.hpp"
+#include "root_sph/scene/response.hpp"
 #include "root_sph/tissue/hyperbolicity.hpp"
 
 namespace rootsoil {
@@ -74,7 +75,7 @@ double automatic_step_h(const Scene& scene) {
   const double speed = fastest_tip_speed_mm_h<Dim>(scene);
   if (!scene.numerics.has_inertia()) {
     if (speed <= 0.0) return std::min(scene.output.every_h, scene.facts.longest_step_h);
-    const double peak_rate = closed_form_flow<Dim>(scene, length, scene.facts.pressure_MPa[1]).peak_rate_per_h;
+    const double peak_rate = fastest_flow<Dim>(scene, length, scene.facts.pressure_MPa[1]).peak_rate_per_h;
     const double growth_h = std::min(rule.growth_per_step / peak_rate, scene.facts.longest_step_h);
     return scene.facts.can_be_arrested ? std::min(growth_h, rule.contact_cells_per_step * size / speed) : growth_h;
   }
@@ -96,10 +97,17 @@ template <int Dim>
 void refuse_unstable_law(const Scene& scene) {
   const TissueLawEntry& law = entry_of(scene.tissue.law);
   if (law.always_hyperbolic || scene.scene.allow_unstable) return;
-  const double p = pressure_MPa(scene, 0.0);
   const double length = scene.root.is_lattice() ? scene.root.length_mm : 5.0;
-  for (int k = 0; k <= 50; ++k) {
-    const double s = length * k / 50.0;
+  constexpr int parts = 50;
+  std::vector<std::pair<double, double>> places;  // distance from the tip, pressure
+  for (int k = 0; k <= parts; ++k) places.emplace_back(length * k / parts, pressure_MPa(scene, 0.0));
+  if (responds_to_perceived(scene)) {
+    const auto [low, high] = responding_range_MPa(scene);
+    for (int k = 0; k <= parts; ++k) {
+      for (const double s : {0.0, 0.5 * length, length}) places.emplace_back(s, low + (high - low) * k / parts);
+    }
+  }
+  for (const auto& [s, p] : places) {
     const ElasticConstants c = elastic_constants(scene, s, p);
     const AcousticFinding finding = scan_acoustic_tensor<Dim>(tangent_of<Dim>(law.value, stiffness<Dim>(c)));
     if (finding.hyperbolic) continue;

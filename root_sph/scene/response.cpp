@@ -80,12 +80,15 @@ void check_response(const Scene& scene, const SectionSpec& target, const std::st
   for (const KeySpec& key : target.keys) {
     const auto found = response.pairs.find(key.name);
     if (found == response.pairs.end()) continue;
-    for (const double p : scene.facts.pressure_MPa) {
+    for (const double p : responding_range_MPa(scene)) {
       const double number = responded(found->second, response.p_MPa, p, extrapolate);
       if (key.limits.contains(number)) continue;
-      origins.fail(fmt::format("{}.{}", name, key.name), fmt::format("Eq. 7 gives {:.4g} at p = {} MPa", number, p),
-                   toml_text(numbers_of(found->second)), key.limits.text(),
-                   "set response.extrapolate = false, or choose p_MPa so that they enclose the pressure");
+      origins.fail(
+          fmt::format("{}.{}", name, key.name),
+          fmt::format("Eq. 7 gives {:.4g} at p = {} MPa{}", number, p,
+                      p < scene.facts.pressure_MPa[0] ? ", which a root perceives that is pushed as hard" : ""),
+          toml_text(numbers_of(found->second)), key.limits.text(),
+          "set response.extrapolate = false, or choose p_MPa so that they enclose the pressure");
     }
   }
 }
@@ -96,6 +99,16 @@ double responded(const std::array<double, 2>& pair, const std::array<double, 2>&
   const double line = (p - p_MPa[1]) / (p_MPa[0] - p_MPa[1]);
   const double theta = extrapolate ? line : std::clamp(line, 0.0, 1.0);
   return theta * pair[0] + (1.0 - theta) * pair[1];
+}
+
+bool responds_to_perceived(const Scene& scene) {
+  const ResponseSection* section = scene.find<ResponseSection>();
+  return section && section->follows == Follows::perceived;
+}
+
+std::array<double, 2> responding_range_MPa(const Scene& scene) {
+  const auto [low, high] = scene.facts.pressure_MPa;
+  return {responds_to_perceived(scene) ? std::min(0.0, low) : low, high};
 }
 
 std::string response_section_name(const std::string& target) {

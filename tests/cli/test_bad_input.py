@@ -181,6 +181,17 @@ SCENES: dict[str, tuple[str, tuple[str, ...]]] = {
         SMALL + "[force]\naxial_N = 0.01\ndistance_to_tip_mm = [0.1, 0.2]\n",
         ("force.distance_to_tip_mm: ", "no cell that can move is in its band"),
     ),
+    "response to what nothing exerts": (
+        SMALL
+        + SECTIONS["pressure"]
+        + '[growth]\nx_g_mm = 0.05\ns_g_mm = 0.15\nc_g = -0.95\n[response]\nfollows = "perceived"\n'
+        + "[response.growth]\np_MPa = [1, 0]\nlambda0_ug_mm3_h = [4e5, 3e5]\n",
+        (
+            "scene.toml:23: response.follows: there is nothing that the root could perceive",
+            'given:   "perceived"',
+            "add [soil], [[obstacle]] or [force], or take follows out",
+        ),
+    ),
     "kernel that reaches no cell": (
         SMALL + '[numerics]\nkernel = "isotropic"\nH_bar = 0.1\n',
         (

@@ -59,6 +59,7 @@ FAMILIES = {
     "soil_buckling": replace(GRAINS, hours=0.08),
     "soil_hard": GRAINS,
     "soil_obstacle_s4": replace(GRAINS, hours=0.04),
+    "soil_perceived": GRAINS,
     "soil_soft": GRAINS,
     "soil_tutorial": GRAINS,
 }

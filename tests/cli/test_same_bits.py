@@ -228,6 +228,40 @@ def test_a_longer_static_run_keeps_its_step(program: Program):
     assert after["time_h"] == 0.4 and after["dt_h"] == before["dt_h"] and after["steps"] == 2 * before["steps"]
 
 
+@pytest.mark.parametrize("numerics", ["step_h = 0.005", 'stepper = "symplectic"\nstep_h = 0.001\nwindow_steps = 7'])
+def test_what_the_root_perceives_is_kept(program: Program, numerics: str):
+    """A root that answers the wall that it feels: the same for two threads and after pauses, and not as one that does
+    not feel it."""
+    keys = "x_e_mm = 0.05\ns_e_per_mm = 40.0\nc_e = 0.2\n"
+    text = replaced(replaced(BALANCED, keys, ""), "step_h = 0.005", numerics)
+    text += """
+[response]
+over_h = 0.05
+follows = "perceived"
+[response.anisotropy]
+p_MPa = [1.0, 0.0]
+x_e_mm = [0.05, 0.02]
+s_e_per_mm = [40.0, 60.0]
+c_e = [0.2, 0.1]
+"""
+    scene = program.scene(text)
+    assert program("run", scene, "--out", "whole", "--threads", 1).status == 0
+    whole = program.folder / "whole"
+    felt = [row["perceived_pressure_MPa"] for row in history(whole)]
+    assert felt[0] == 1.0 and 0.0 <= min(felt) < 0.99, felt
+    resume: list[str] = []
+    for until, threads in ((0.137, 1), (0.25, 2)):
+        assert program("run", scene, "--out", "out", "--until", until, "--threads", threads, *resume).status == 0
+        resume = ["--resume"]
+    assert program("run", scene, "--out", "out", "--resume", "--threads", 2).status == 0
+    same_results(program.folder / "out", whole)
+    scene = program.scene(replaced(replaced(text, "over_h = 0.05\n", ""), '"perceived"', '"pressure"'))
+    assert program("run", scene, "--out", "unfelt", "--threads", 1).status == 0
+    assert "perceived_pressure_MPa" not in history(program.folder / "unfelt")[0]
+    assert "response/tip_thrust_MPa" not in checkpoint(program.folder / "unfelt")
+    assert history(program.folder / "unfelt")[-1]["length_mm"] != history(whole)[-1]["length_mm"]
+
+
 def wait_for(path: Path, lines: int) -> None:
     """Until a text file has so many lines."""
     end = time.monotonic() + 120

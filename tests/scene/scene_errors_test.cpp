@@ -189,6 +189,14 @@ std::vector<Case> cases() {
       {"response_leaves_range",
        replaced(grown, "s_g_mm = 0.37\n", "") + "\n[response.growth]\np_MPa = [0.5, 0.4]\n" + "s_g_mm = [0.1, 0.4]\n",
        "response.growth.s_g_mm", "Eq. 7 gives -1.4 at p = 1 MPa"},
+      {"response_leaves_range_where_pushed",
+       replaced(grown, "s_g_mm = 0.37\n", "") + "\n[response]\nfollows = \"perceived\"\n" + response_growth +
+           "s_g_mm = [0.4, 0.1]\n",
+       "response.growth.s_g_mm", "Eq. 7 gives -0.2 at p = 0 MPa, which a root perceives that is pushed as hard"},
+      {"response_time_of_what_is_given",
+       replaced(grown, "s_g_mm = 0.37\n", "") + "\n[response]\nover_h = 1\n" + response_growth +
+           "s_g_mm = [0.4, 0.3]\n",
+       "response.over_h", "only where follows is perceived"},
 
       // geometry
       {"thinner_than_a_cell", replaced(minimal, "= 0.05", "= 0.004"), "root.radius_mm", "thinner than one cell"},

@@ -76,6 +76,9 @@ asynchronous = true
 
 [response]
 extrapolate = false
+follows = "perceived"
+over_h = 0.5
+tip_length_mm = 0.1
 
 [response.growth]
 p_MPa = [0.987, 0.625]
@@ -272,6 +275,10 @@ TEST(Scene, EverythingIsRead) {
   EXPECT_EQ(s.find<GrowthSection>()->mature_at_mm, 2.0);
   EXPECT_EQ(s.find<DivisionSection>()->constant_beyond_mm, 0.5);
   EXPECT_FALSE(s.find<ResponseSection>()->extrapolate);
+  EXPECT_EQ(s.find<ResponseSection>()->follows, Follows::perceived);
+  EXPECT_EQ(s.find<ResponseSection>()->over_h, 0.5);
+  EXPECT_EQ(s.find<ResponseSection>()->tip_length_mm, 0.1);
+  EXPECT_EQ(responding_range_MPa(s), (std::array{0.0, 1.0}));
   EXPECT_EQ(response_of(s, "growth")->pairs.at("s_g_mm")[1], 0.3);
   EXPECT_FALSE(response_of(s, "growth")->pairs.contains("c_g"));
   EXPECT_EQ(response_of(s, "tissue.anisotropy")->pairs.at("E_radial_max_MPa")[1], 14000.0);

@@ -166,6 +166,8 @@ TEST(Thrust, GrowthFallsLinearlyAndStopsAtTheClosedForm) {
   double n = 0.0, sf = 0.0, sv = 0.0, sff = 0.0, sfv = 0.0, slowest = 1.0, fastest = 0.0;
   run.advance_to(3.0, [&] {
     impulse += run.axial_force_N() * run.tissue.step_h;
+    EXPECT_NEAR(-run.contact.tip_force_N(0.5)[0], run.axial_force_N(), 1e-12 * arrest_N(run));
+    EXPECT_EQ(run.contact.tip_force_N(-1.0)[0], 0.0);
     const double hours = run.tissue.time_h - from_h;
     if (hours < 0.2 - 1e-9) return;
     const double v = (run.solver.axis().length_mm() - from_mm) / hours / free_speed;

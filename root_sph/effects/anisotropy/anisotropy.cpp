@@ -38,7 +38,7 @@ const SectionSpec& anisotropy_specification() {
 /// E_R is monotonous in s, so its ends are at s = 0 and far away; it is not linear in p.
 void complete_anisotropy(const Scene& scene) {
   constexpr int samples = 32;
-  const auto [low, high] = scene.facts.pressure_MPa;
+  const auto [low, high] = responding_range_MPa(scene);
   std::vector<double> moduli;
   for (int i = 0; i <= (response_of(scene, "tissue.anisotropy") ? samples : 0); ++i) {
     const AnisotropySection a = *anisotropy_at(scene, low + (high - low) * i / samples);
@@ -81,7 +81,7 @@ AnisotropyEffect<Dim>::AnisotropyEffect(Solver<Dim>& solver, const Scene& scene)
       {"stiffness", "MPa", "entries of C, and of the trace of S (1/MPa)", Storage::scratch},
       on_division::recomputed<Dim, Stiffness<Dim>>);
   solver.hooks().parameters.emplace_back("anisotropy", [this, &solver, scene](Tissue<Dim>& t) {
-    const AnisotropySection anisotropy = *anisotropy_at(scene, t.pressure_MPa);
+    const AnisotropySection anisotropy = *anisotropy_at(scene, t.perceived_MPa());
     const ElasticConstants uniform = isotropic_constants(scene.tissue);
 #pragma omp parallel for schedule(static)
     for (std::size_t i = 0; i < t.cells.size(); ++i) {

@@ -83,7 +83,7 @@ SectionSpec force_section() {
 }  // namespace
 
 template <int Dim>
-ForceEffect<Dim>::ForceEffect(Solver<Dim>& solver, ForceSection force) : force_(std::move(force)) {
+ForceEffect<Dim>::ForceEffect(Solver<Dim>& solver, ForceSection force) : solver_(solver), force_(std::move(force)) {
   solver.hooks().parameters.emplace_back("force", [this](Tissue<Dim>& t) {
     loaded_.clear();
     weight_.clear();
@@ -105,15 +105,26 @@ ForceEffect<Dim>::ForceEffect(Solver<Dim>& solver, ForceSection force) : force_(
   solver.hooks().forces.emplace_back("force", [this](Tissue<Dim>& t, SlipAdvance advance) {
     const double factor = force_.table.empty() ? 1.0 : value_at(force_.table, t.time_h);
     applied_N_.setZero();
+    share_N_.clear();
     for (std::size_t k = 0; k < loaded_.size(); ++k) {
       const std::size_t i = loaded_[k];
       const Vec<Dim> whole = force_.axial_N ? Vec<Dim>(-*force_.axial_N * axis_now<Dim>(t, i, advance))
                                             : shortened<Dim>(*force_.vector_N);
       const Vec<Dim> share = factor * weight_[k] * whole;
+      share_N_.push_back(share);
       t.force[i] += share;
       applied_N_ += share;
     }
   });
+}
+
+template <int Dim>
+Vec<Dim> ForceEffect<Dim>::tip_force_N(double within_mm) const {
+  Vec<Dim> sum = Vec<Dim>::Zero();
+  for (std::size_t k = 0; k < share_N_.size(); ++k) {
+    if (solver_.tissue().cells.distance_to_tip[loaded_[k]] <= within_mm) sum += share_N_[k];
+  }
+  return sum;
 }
 
 template <int Dim>

@@ -20,12 +20,15 @@ class ForceEffect final : public Effect<Dim> {
  public:
   ForceEffect(Solver<Dim>& solver, ForceSection force);
   Vec<Dim> external_force_N() const override { return applied_N_; }
+  Vec<Dim> tip_force_N(double within_mm) const override;
   std::vector<std::pair<std::string, double>> history() const override;
 
  private:
+  const Solver<Dim>& solver_;
   ForceSection force_;
   std::vector<std::size_t> loaded_;  ///< cells of the band, in the window under way
   std::vector<double> weight_;       ///< of each; together 1
+  std::vector<Vec<Dim>> share_N_;    ///< on each of them, at the latest forces; empty before
   Vec<Dim> applied_N_ = Vec<Dim>::Zero();
 };
 

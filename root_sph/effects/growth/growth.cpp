@@ -121,13 +121,13 @@ GrowthEffect<Dim>::GrowthEffect(Solver<Dim>& solver, const Scene& scene)
           on_division::recomputed<Dim, double>)) {
   Tissue<Dim>& tissue = solver.tissue();
   tissue.material.softening = &softening_;
-  if (!growth_at(scene, tissue.pressure_MPa)->yield.empty()) {
+  if (!growth_at(scene, tissue.perceived_MPa())->yield.empty()) {
     yield_ = &tissue.cells.template declare<double>(
         {"yield_stress", "MPa", "beyond which the cell grows", Storage::scratch}, on_division::recomputed<Dim, double>);
     tissue.material.yield = yield_;
   }
   solver.hooks().operators.emplace_back("growth", [this, scene](Tissue<Dim>& t) {
-    const GrowthSection growth = *growth_at(scene, t.pressure_MPa);
+    const GrowthSection growth = *growth_at(scene, t.perceived_MPa());
     const auto softening = [&](double s) { return softening_ug_mm3_h(growth, s); };
     measure(t, softening, softening_);
     if (!yield_) return;

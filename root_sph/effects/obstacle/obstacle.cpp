@@ -315,6 +315,15 @@ Vec<Dim> ObstacleEffect<Dim>::contact_force_N() const {
   return sum;
 }
 
+template <int Dim>
+Vec<Dim> ObstacleEffect<Dim>::tip_force_N(double within_mm) const {
+  Vec<Dim> sum = Vec<Dim>::Zero();
+  for (const std::size_t i : near_) {
+    if (solver_.tissue().cells.distance_to_tip[i] <= within_mm) sum += force_[i];
+  }
+  return sum;
+}
+
 EffectSpec obstacle_effect() {
   return {.name = "obstacle",
           .called_by = "[[obstacle]]",

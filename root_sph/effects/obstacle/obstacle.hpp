@@ -53,6 +53,7 @@ class ObstacleEffect final : public Effect<Dim> {
   ObstacleEffect(Solver<Dim>& solver, ObstacleParameters<Dim> parameters);
   void add_columns(const Tissue<Dim>& tissue, std::vector<FrameColumn>& columns) const override;
   Vec<Dim> contact_force_N() const override;
+  Vec<Dim> tip_force_N(double within_mm) const override;
   void keep_awake(std::vector<char>& busy) const override;
 
  private:

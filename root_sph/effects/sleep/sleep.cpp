@@ -194,6 +194,7 @@ void SleepEffect<Dim>::fall_asleep(Tissue<Dim>& tissue) {
   }
   solver_.axis().set_still_length(length_mm_ - awake_end_mm);
   pressure_MPa_ = tissue.pressure_MPa;
+  perceived_MPa_ = tissue.perceived_MPa();
 }
 
 /// What pairs carry is kept while one of their cells rests. The tissue does not turn meanwhile.
@@ -259,7 +260,8 @@ void SleepEffect<Dim>::watch(const Tissue<Dim>& tissue) {
   if (cells.size() == cells.total()) return;
   const double scale = std::max(std::abs(tissue.pressure_MPa), std::abs(pressure_MPa_));
   const double most = parameters_.stress_change * scale;
-  wake_wanted_ = std::abs(tissue.pressure_MPa - pressure_MPa_) > most;
+  wake_wanted_ =
+      std::max(std::abs(tissue.pressure_MPa - pressure_MPa_), std::abs(tissue.perceived_MPa() - perceived_MPa_)) > most;
   for (std::size_t i = 0; i < cells.size() && !wake_wanted_; ++i) {
     wake_wanted_ = asleep_[i] && std::abs(cells.stress[i][0] - stress_asleep_[i]) > most;
   }
@@ -312,7 +314,8 @@ void SleepEffect<Dim>::save(NamedReals& reals) const {
                           length_mm_,
                           pressure_MPa_,
                           wake_wanted_ ? 1.0 : 0.0,
-                          static_cast<double>(woken_)};
+                          static_cast<double>(woken_),
+                          perceived_MPa_};
   std::vector<double>& slips = reals["sleep/slips"];
   for (const RestingSlip& s : slips_) {
     slips.push_back(static_cast<double>(s.first_id));
@@ -338,6 +341,7 @@ void SleepEffect<Dim>::restore(const NamedReals& reals) {
   pressure_MPa_ = state.at(5);
   wake_wanted_ = state.at(6) != 0.0;
   woken_ = static_cast<std::int64_t>(state.at(7));
+  perceived_MPa_ = state.at(8);
   const std::vector<double>& slips = reals.at("sleep/slips");
   slips_.clear();
   constexpr std::size_t length = 2 + 2 * Dim;

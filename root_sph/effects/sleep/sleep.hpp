@@ -78,6 +78,7 @@ class SleepEffect final : public Effect<Dim> {
   double rest_beyond_mm_ = 0.0;    ///< and where they go to rest
   double length_mm_ = 0.0;         ///< at the latest update of the resting cells' distances
   double pressure_MPa_ = 0.0;      ///< when cells fell asleep
+  double perceived_MPa_ = 0.0;     ///< then, what parameters respond to
   bool wake_wanted_ = false;       ///< before the next window
   bool slips_wanted_ = false;      ///< in this window
   std::int64_t woken_ = 0;         ///< times

@@ -106,7 +106,7 @@ void SoilContactEffect<Dim>::move_markers(const Tissue<Dim>& tissue) {
   exchange_.move(motion, part());
   root_did(window_.work_Nmm(motion));
   if (window_.share() < 1.0 || !parameters_.free_growth.axial_rate_per_h) return;
-  books_.expect(expected_speed_mm_h(), solver_.window_h(), tissue.time_h, solver_.axis().length_mm());
+  books_.expect(expected_speed_mm_h(thrust()), solver_.window_h(), tissue.time_h, solver_.axis().length_mm());
 }
 
 template <int Dim>
@@ -122,7 +122,7 @@ void SoilContactEffect<Dim>::exchange(const Tissue<Dim>& tissue) {
   books_.soil_received(received_Nmm);
   if (parameters_.stiffness_predictor || !parameters_.free_growth.axial_rate_per_h) return;
   const RootSize root = root_size();
-  const double free_speed_mm_h = expected_tip_speed_mm_h({}, root, parameters_.free_growth.axial_rate_per_h);
+  const double free_speed_mm_h = expected_speed_mm_h({});
   if (auto note = energy_.soil_received(received_Nmm, window_.share(),
                                         parameters_.windows_per_interval * solver_.window_h() / part(), tissue.time_h,
                                         root.arrest_N * free_speed_mm_h)) {
@@ -135,7 +135,7 @@ RootSize SoilContactEffect<Dim>::root_size() const {
   const RootAxis<Dim>& axis = solver_.axis();
   const double section = mean_section<Dim>(solver_.tissue(), axis);
   return {axis.length_mm(), axis.bin_mm(),
-          parameters_.free_growth.arrest_stress_MPa(solver_.tissue().pressure_MPa) * section};
+          parameters_.free_growth.arrest_stress_MPa(Pressures(solver_.tissue())) * section};
 }
 
 template <int Dim>
@@ -148,8 +148,10 @@ std::vector<MarkerThrust> SoilContactEffect<Dim>::thrust() const {
 }
 
 template <int Dim>
-double SoilContactEffect<Dim>::expected_speed_mm_h() const {
-  return expected_tip_speed_mm_h(thrust(), root_size(), parameters_.free_growth.axial_rate_per_h);
+double SoilContactEffect<Dim>::expected_speed_mm_h(const std::vector<MarkerThrust>& thrust) const {
+  const Pressures now(solver_.tissue());
+  return expected_tip_speed_mm_h(thrust, root_size(),
+                                 [&](double s_mm) { return parameters_.free_growth.axial_rate_per_h(s_mm, now); });
 }
 
 template <int Dim>
@@ -185,7 +187,7 @@ std::vector<std::pair<std::string, double>> SoilContactEffect<Dim>::history() co
     totals.load_N += f.norm();
   }
   if (parameters_.free_growth.axial_rate_per_h && !on_markers.empty()) {
-    totals.expected_tip_speed_mm_h = expected_speed_mm_h();
+    totals.expected_tip_speed_mm_h = expected_speed_mm_h(on_markers);
   }
   return soil_history(totals, books_, exchange_.numbers());
 }
@@ -213,6 +215,15 @@ template <int Dim>
 Vec<Dim> SoilContactEffect<Dim>::contact_force_N() const {
   Vec<Dim> sum = Vec<Dim>::Zero();
   for (const std::size_t i : loaded_) sum += force_[i];
+  return sum;
+}
+
+template <int Dim>
+Vec<Dim> SoilContactEffect<Dim>::tip_force_N(double within_mm) const {
+  Vec<Dim> sum = Vec<Dim>::Zero();
+  for (std::size_t m = 0; m < place_.size(); ++m) {
+    if (place_[m].distance_to_tip_mm <= within_mm) sum += window_.applied_N()[m];
+  }
   return sum;
 }
 

@@ -58,6 +58,7 @@ class SoilContactEffect final : public Effect<Dim> {
   std::vector<std::string> take_notes() override;
   std::string closing_remark() const override;
   Vec<Dim> contact_force_N() const override;
+  Vec<Dim> tip_force_N(double within_mm) const override;
 
   const MaterialSurface<Dim>& surface() const { return exchange_.surface(); }
   /// Of the soil on a marker, as last answered.
@@ -83,7 +84,7 @@ class SoilContactEffect final : public Effect<Dim> {
   void exchange(const Tissue<Dim>& tissue);
   std::vector<MarkerThrust> thrust() const;
   RootSize root_size() const;
-  double expected_speed_mm_h() const;
+  double expected_speed_mm_h(const std::vector<MarkerThrust>& thrust) const;
 
   Solver<Dim>& solver_;
   SoilContactParameters parameters_;
