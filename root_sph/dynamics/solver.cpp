@@ -286,8 +286,8 @@ bool Solver<Dim>::find_balance(bool downhill, double most_thrust_change) {
 }
 
 /// A step without inertia, in parts where its balance cannot be found in one: halves, quarters, ... Each is a window.
-/// So too where a growing root meets something that pushes back: thrust rises as fast as the tissue's stiffness lets it,
-/// and strain comes at no constant rate in such a step.
+/// So too where a growing root meets something that pushes back: thrust rises as fast as the tissue's stiffness lets
+/// it, and strain comes at no constant rate in such a step.
 template <int Dim>
 void Solver<Dim>::quasi_static_step() {
   constexpr int most_halvings = 10, most_easy_halvings = 2, most_halvings_for_thrust = 4;

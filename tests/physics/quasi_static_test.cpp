@@ -206,9 +206,9 @@ TEST(QuasiStatic, FarBeyondEulersLoadAColumnIsBent) {
   }
 }
 
-/// A force that follows the tip (force.axial_N), at twice the load at which a weight would bend the column: a push F from
-/// the side bends it by F/P (sin(b)/b - cos(b)) l, b = pi/2 sqrt(P/P_Euler), less than without it. From
-/// E I w'' = P (w_l - w) + (F - P w_l') (l - x), Beck's column without its inertia (Timoshenko & Gere, 2.21).
+/// A force that follows the tip (force.axial_N), at twice the load at which a weight would bend the column: a push F
+/// from the side bends it by F/P (sin(b)/b - cos(b)) l, b = pi/2 sqrt(P/P_Euler), less than without it. From E I w'' =
+/// P (w_l - w) + (F - P w_l') (l - x), Beck's column without its inertia (Timoshenko & Gere, 2.21).
 TEST(QuasiStatic, AColumnUnderAForceThatFollowsItsTipStands) {
   constexpr int across = 12;
   constexpr double lateral_N = 5e-4;  // bends it by 5e-3 of the length: well above what a balance leaves
@@ -222,7 +222,7 @@ TEST(QuasiStatic, AColumnUnderAForceThatFollowsItsTipStands) {
   const double b = 0.5 * std::numbers::pi * std::sqrt(2.0);
   const double theory = 3.0 * (std::sin(b) - b * std::cos(b)) / (b * b * b);
   record("deflection/deflection without it", pressed.deflection_mm / plain.deflection_mm);
-  expect_within_record("deflection with over without it, over theory - 1",
+  expect_within_record("deflection over that without it and theory - 1",
                        pressed.deflection_mm / plain.deflection_mm / theory - 1.0);
 }
 

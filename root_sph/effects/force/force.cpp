@@ -108,8 +108,8 @@ ForceEffect<Dim>::ForceEffect(Solver<Dim>& solver, ForceSection force) : solver_
     share_N_.clear();
     for (std::size_t k = 0; k < loaded_.size(); ++k) {
       const std::size_t i = loaded_[k];
-      const Vec<Dim> whole = force_.axial_N ? Vec<Dim>(-*force_.axial_N * axis_now<Dim>(t, i, advance))
-                                            : shortened<Dim>(*force_.vector_N);
+      const Vec<Dim> whole =
+          force_.axial_N ? Vec<Dim>(-*force_.axial_N * axis_now<Dim>(t, i, advance)) : shortened<Dim>(*force_.vector_N);
       const Vec<Dim> share = factor * weight_[k] * whole;
       share_N_.push_back(share);
       t.force[i] += share;
