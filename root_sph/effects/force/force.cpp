@@ -40,7 +40,7 @@ bool is_in_band(const ForceSection& force, double s_mm) {
 /// potential, and a column under it stands where a weight of the same size would bend it (Beck's column).
 template <int Dim>
 Vec<Dim> axis_now(const Tissue<Dim>& tissue, std::size_t cell, SlipAdvance advance) {
-  const Vec<Dim> axis = tissue.cells.frame[cell].col(0);
+  Vec<Dim> axis = tissue.cells.frame[cell].col(0);
   const double ahead_h = advance.used_h - advance.kept_h;
   if (ahead_h == 0.0) return axis;
   return step_rotation<Dim>(ahead_h * tissue.velocity_gradient[cell] * tissue.deformation[cell].inverse()) * axis;
